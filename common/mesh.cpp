@@ -1,0 +1,78 @@
+#include "common/mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "common/error.h"
+
+namespace vivify {
+
+double signed_volume(const TriangleMesh& mesh) {
+  double six_volumes = 0;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    const Eigen::Vector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
+    six_volumes += a.dot(b.cross(c));
+  }
+  return six_volumes / 6;
+}
+
+Eigen::VectorXd tet_volumes(const TetMesh& mesh) {
+  Eigen::VectorXd volumes(mesh.T.rows());
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+    const Eigen::Vector3d o = mesh.V.row(mesh.T(t, 0));
+    const Eigen::Vector3d a = mesh.V.row(mesh.T(t, 1)).transpose() - o;
+    const Eigen::Vector3d b = mesh.V.row(mesh.T(t, 2)).transpose() - o;
+    const Eigen::Vector3d c = mesh.V.row(mesh.T(t, 3)).transpose() - o;
+    volumes[t] = a.dot(b.cross(c)) / 6;
+  }
+  return volumes;
+}
+
+Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density) {
+  const Eigen::VectorXd volumes = tet_volumes(mesh);
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.V.rows());
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+    for (int k = 0; k < 4; ++k) mass[mesh.T(t, k)] += density * volumes[t] / 4;
+  }
+  return mass;
+}
+
+Triangles boundary_faces(const TetMesh& mesh) {
+  static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  std::map<std::array<int, 3>, std::array<int, 3>> open;  // sorted face -> oriented face
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+    for (const auto& corner : kFaces) {
+      const std::array<int, 3> face = {mesh.T(t, corner[0]), mesh.T(t, corner[1]), mesh.T(t, corner[2])};
+      std::array<int, 3> key = face;
+      std::sort(key.begin(), key.end());
+      if (const auto [it, inserted] = open.emplace(key, face); !inserted) open.erase(it);
+    }
+  }
+  Triangles F(static_cast<Eigen::Index>(open.size()), 3);
+  Eigen::Index row = 0;
+  for (const auto& [key, face] : open) F.row(row++) << face[0], face[1], face[2];
+  return F;
+}
+
+Points vertex_normals(const Points& V, const Triangles& F) {
+  Points N = Points::Zero(V.rows(), 3);
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Eigen::RowVector3d a = V.row(F(f, 0));
+    const Eigen::RowVector3d n = (V.row(F(f, 1)) - a).cross(V.row(F(f, 2)) - a);
+    for (int k = 0; k < 3; ++k) N.row(F(f, k)) += n;
+  }
+  for (Eigen::Index v = 0; v < N.rows(); ++v) {
+    const double length = N.row(v).norm();
+    if (length > 0) N.row(v) /= length;
+  }
+  return N;
+}
+
+Box bounding_box(const Points& V) {
+  if (V.rows() == 0) throw Error(ErrorKind::geometry, "the mesh has no vertices");
+  return {V.colwise().minCoeff().transpose(), V.colwise().maxCoeff().transpose()};
+}
+
+}  // namespace vivify

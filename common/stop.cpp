@@ -1,0 +1,28 @@
+#include "common/stop.h"
+
+#include <csignal>
+
+#include "common/error.h"
+
+namespace vivify {
+namespace {
+
+volatile std::sig_atomic_t asked_signal = 0;
+
+void on_signal(int signal) { asked_signal = signal; }
+
+}  // namespace
+
+void install_stop_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = on_signal;
+  for (const int signal : {SIGTERM, SIGUSR1, SIGINT}) sigaction(signal, &action, nullptr);
+}
+
+void check_stop() {
+  if (asked_signal == 0) return;
+  if (asked_signal == SIGINT) throw Error(ErrorKind::interrupted, "interrupted", "run the same command again to go on");
+  throw Error(ErrorKind::stopped, "stopped on request", "run the same command again to go on");
+}
+
+}  // namespace vivify
