@@ -4,13 +4,20 @@ namespace vivify {
 
 int exit_code(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::usage: return 2;
-    case ErrorKind::geometry: return 3;
-    case ErrorKind::numerical: return 4;
-    case ErrorKind::io: return 5;
-    case ErrorKind::internal: return 70;
-    case ErrorKind::stopped: return 75;
-    case ErrorKind::interrupted: return 130;
+    case ErrorKind::usage:
+      return 2;
+    case ErrorKind::geometry:
+      return 3;
+    case ErrorKind::numerical:
+      return 4;
+    case ErrorKind::io:
+      return 5;
+    case ErrorKind::internal:
+      return 70;
+    case ErrorKind::stopped:
+      return 75;
+    case ErrorKind::interrupted:
+      return 130;
   }
   return 70;
 }

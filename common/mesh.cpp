@@ -12,7 +12,8 @@ namespace vivify {
 double signed_volume(const TriangleMesh& mesh) {
   double six_volumes = 0;
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-    const Eigen::Vector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
+    const Eigen::Vector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)),
+                          c = mesh.V.row(mesh.F(f, 2));
     six_volumes += a.dot(b.cross(c));
   }
   return six_volumes / 6;

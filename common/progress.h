@@ -19,9 +19,14 @@ class Progress {
 
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
-// bar: one redrawn line on standard error; plain: a line every tenth; json: one JSON object per line on standard output
+// bar: one redrawn line on standard error; plain: a line every tenth; json: one JSON object per line on
+// standard output
 // ({"event":"start|advance|finish","stage":…,"done":…,"total":…,"elapsed_s":…,"remaining_s":…,"note":…});
 // automatic: bar on a terminal, else plain.
 std::unique_ptr<Progress> make_progress(ProgressStyle style);
+
+// Seconds left at the pace so far; units that were there at the start (`resumed`) say nothing about the pace.
+// Infinite while the pace is unknown.
+double remaining_seconds(double elapsed_s, long total, long done, long resumed);
 
 }  // namespace vivify

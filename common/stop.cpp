@@ -21,7 +21,8 @@ void install_stop_handlers() {
 
 void check_stop() {
   if (asked_signal == 0) return;
-  if (asked_signal == SIGINT) throw Error(ErrorKind::interrupted, "interrupted", "run the same command again to go on");
+  if (asked_signal == SIGINT)
+    throw Error(ErrorKind::interrupted, "interrupted", "run the same command again to go on");
   throw Error(ErrorKind::stopped, "stopped on request", "run the same command again to go on");
 }
 
