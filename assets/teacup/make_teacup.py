@@ -40,7 +40,15 @@ def verify(vertices, triangles, genus):
             break
         label = least
     assert label.max() == 0, "more than one component"
-    # With one component and every directed edge once, a vertex whose fan is not one disc would raise this number.
+    after = np.roll(triangles, 1, axis=1).T.reshape(-1)  # third corner of each directed edge's triangle
+    order = np.argsort(keys)
+    onward = order[np.searchsorted(keys[order], edges[:, 0] * count + after)]  # next edge around the first vertex
+    turns, walked = np.ones(len(edges), int), onward
+    while not np.array_equal(walked, np.arange(len(edges))):
+        active = walked != np.arange(len(edges))
+        turns[active] += 1
+        walked = np.where(active, onward[walked], walked)
+    assert np.array_equal(turns, np.bincount(edges[:, 0])[edges[:, 0]]), "two fans of triangles meet in one vertex"
     euler = count - len(edges) // 2 + len(triangles)
     assert euler == 2 - 2 * genus, f"Euler number {euler}, wanted {2 - 2 * genus}"
     a, b, c = (vertices[triangles[:, k]] for k in range(3))

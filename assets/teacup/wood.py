@@ -3,9 +3,9 @@
 import numpy as np
 
 TILE = (7.2, 9.6)          # metres of table that the picture covers: across the planks, along the grain
-SIZE = (1536, 1024)        # pixels: across, along
+SIZE = (2048, 1536)        # pixels: across, along
 PLANKS = 6
-LEVELS, TINTS = 24, 6      # shades of one plank, hues of planks
+LEVELS, TINTS = 32, 8      # shades of one plank, hues of planks
 
 
 def soft_noise(rng, across, along):
@@ -27,34 +27,34 @@ def make():
     y = (across - plank * width)[:, None] - width / 2
     turns = 2 * np.pi * along[None] / TILE[1]
 
-    wobble = 0.020 * soft_noise(rng, 60, 90) + 0.006 * soft_noise(rng, 14, 70)
+    wobble = 0.020 * soft_noise(rng, 80, 130) + 0.006 * soft_noise(rng, 18, 100)
     shade, tint = np.zeros(SIZE), np.zeros(SIZE[0])
     for k in range(PLANKS):
         rows = plank == k
         a = rng.random(12)
         # Distance to the heart of the tree, which runs slightly askew under the plank: cathedrals where it is near.
         heart = (a[0] - 0.5) * 0.9 + 0.05 * np.sin(turns + 6.3 * a[1])
-        depth = 0.16 + 0.30 * a[2] + 0.10 * np.sin(turns + 6.3 * a[3]) + 0.045 * np.sin(2 * turns + 6.3 * a[4])
+        depth = 0.15 + 0.32 * a[2] + 0.12 * np.sin(turns + 6.3 * a[3]) + 0.022 * np.sin(2 * turns + 6.3 * a[4])
         yy = y[rows] + wobble[rows]
         radius = np.hypot(yy - heart, depth)
         for _ in range(int(a[5] > 0.35) + int(a[6] > 0.75)):  # knots: the rings flow around them
             b = rng.random(4)
-            ky, kx, size = (b[0] - 0.5) * 0.75 * width, b[1] * TILE[1], 0.030 + 0.030 * b[2]
+            ky, kx, size = (b[0] - 0.5) * 0.7 * width, b[1] * TILE[1], 0.040 + 0.035 * b[2]
             dx = (along[None] - kx + TILE[1] / 2) % TILE[1] - TILE[1] / 2
             d = np.hypot((yy - ky) / size, dx / (1.6 * size))
-            radius = radius + 1.1 * size * np.exp(-0.22 * d**2) * np.sign(ky - heart + 1e-6)
-            shade[rows] += 0.75 * np.exp(-(d / 0.75)**4) + 0.28 * np.exp(-(d / 1.6)**2)
+            radius = radius + 1.3 * size * np.exp(-0.12 * d**2) * np.tanh((yy - ky) / size) * np.sign(ky - heart)
+            grain = 0.5 + 0.5 * np.cos(2 * np.pi * d / 0.34)
+            shade[rows] += (0.42 + 0.14 * grain) * np.exp(-(d / 0.85)**6) + 0.25 * np.exp(-(d / 1.5)**2)
         ring = radius / (0.050 + 0.018 * a[7]) + a[8]
         phase = ring - np.floor(ring)
         shade[rows] += 0.46 * phase**2.2 * np.clip((1 - phase) / 0.10, 0, 1)  # late wood darkens, then stops sharply
         tint[rows] = a[9]
-        shade[rows] += 0.16 * (a[10] - 0.5)
-    shade += 0.075 * soft_noise(rng, 0.9, 26) + 0.05 * soft_noise(rng, 3.0, 60) + 0.05 * soft_noise(rng, 40, 140)
-    pores = soft_noise(rng, 0.55, 5.0)
+        shade[rows] += 0.26 * (a[10] - 0.5)
+    shade += 0.085 * soft_noise(rng, 1.1, 38) + 0.05 * soft_noise(rng, 4.0, 90) + 0.05 * soft_noise(rng, 55, 210)
+    pores = soft_noise(rng, 0.7, 7.0)
     shade += 0.16 * np.clip(pores - 1.5, 0, 1.2)
     edge = np.abs(np.abs(y) - width / 2)  # the joint between planks
     shade += 0.9 * np.exp(-(edge / 0.0055)**2) + 0.12 * np.exp(-(edge / 0.02)**2)
-    shade += 0.0 * shade
     level = np.clip(np.round((0.10 + 0.80 * shade) * (LEVELS - 1)), 0, LEVELS - 1).astype(np.uint8)
     hue = np.minimum((tint * TINTS).astype(int), TINTS - 1).astype(np.uint8)
     indices = hue[:, None] * LEVELS + level
@@ -64,5 +64,5 @@ def make():
     colours = np.where(ramp < 0.55, light + (middle - light) * ramp / 0.55, middle + (dark - middle) * (ramp - 0.55) / 0.45)
     palette = []
     for t in np.linspace(-1, 1, TINTS):
-        palette.append(colours * (1 + 0.075 * t * np.array([1.0, 1.05, 1.25])))
+        palette.append(colours * (1 + 0.09 * t * np.array([1.0, 1.05, 1.25])))
     return indices, np.clip(np.round(np.concatenate(palette)), 0, 255).astype(np.uint8)
