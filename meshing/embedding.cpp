@@ -130,7 +130,7 @@ Embedding embed(const TetMesh& mesh, const Points& points) {
       Eigen::BVMinimize(tets.tree(), nearest);
       int t = nearest.best;
       if (nearest.best_distance > 0) {
-        SmallestWeights smallest{tets, points.row(i), nearest.best_distance * (1 + 1e-6)};
+        SmallestWeights smallest{tets, points.row(i), nearest.best_distance * (1 + 1e-12)};
         Eigen::BVIntersect(tets.tree(), smallest);
         t = smallest.best;
       }
