@@ -129,7 +129,8 @@ PlaneComparison measure(const Plane& plane, const Image& ref, const Image& test,
   PlaneComparison result;
   result.name = plane.name;
   const double limit = plane.kind == PlaneKind::geometry ? limits.rounding : limits.pixel;
-  double sum = 0, bias = 0, weight = 0;
+  double sum = 0;
+  std::vector<double> bias(plane.ref.size(), 0), weight(plane.ref.size(), 0);
   long finite = 0;
   broken = 0;
   for (int y = 0; y < ref.height; ++y) {
@@ -141,8 +142,8 @@ PlaneComparison measure(const Plane& plane, const Image& ref, const Image& test,
         bits = bits && same_bits(a, b);
         error = std::max(error, error_of(plane.kind, a, b));
         if (std::isfinite(a) && std::isfinite(b)) {
-          bias += static_cast<double>(b) - a;
-          weight += plane.kind == PlaneKind::display ? 1 : std::abs(static_cast<double>(a)) + kFloor;
+          bias[c] += static_cast<double>(b) - a;
+          weight[c] += plane.kind == PlaneKind::display ? 1 : std::abs(static_cast<double>(a)) + kFloor;
         }
       }
       if (std::isfinite(error)) {
@@ -163,7 +164,10 @@ PlaneComparison measure(const Plane& plane, const Image& ref, const Image& test,
     }
   }
   result.mean_error = finite > 0 ? sum / static_cast<double>(finite) : 0;
-  if (plane.kind != PlaneKind::geometry && weight > 0) result.signed_mean = bias / weight;
+  for (std::size_t c = 0; plane.kind != PlaneKind::geometry && c < bias.size(); ++c) {
+    const double share = weight[c] > 0 ? bias[c] / weight[c] : 0;
+    if (std::abs(share) > std::abs(result.signed_mean)) result.signed_mean = share;
+  }
   return result;
 }
 

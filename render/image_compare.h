@@ -20,7 +20,7 @@ struct CompareLimits {
   double pixel = 0.02;          // a pixel with a larger error fails ...
   double failing_share = 1e-3;  // ... and at most this share of the pixels may fail
   double block = 5e-3;  // error of the mean of each 8 by 8 block: single paths differ, block means do not
-  double signed_mean = 1e-3;  // |sum(test - ref)| / sum(|ref| + 0.01): a bias too small to be seen in a pixel
+  double signed_mean = 1e-3;  // |sum(test - ref)| / sum(|ref| + 0.01) of any channel: a bias no pixel shows
 
   // Geometry: everything agrees but for silhouettes, where a sample may hit the one or the other side.
   double rounding = 1e-5;          // a smaller error is none
@@ -36,7 +36,7 @@ struct PlaneComparison {
   std::string reason;      // why not, in words; empty when same
   double max_error = 0;    // infinite where one value is finite and the other is not
   double mean_error = 0;   // over the pixels of finite error
-  double signed_mean = 0;  // of colours: the bias, as in CompareLimits
+  double signed_mean = 0;  // of colours: the bias of the channel that has the largest
   long failing_pixels =
       0;  // exact: that differ in a bit; colours: beyond `pixel`; geometry: beyond `rounding`
   int worst_x = 0, worst_y = 0;  // the pixel of the largest error, from the top left
