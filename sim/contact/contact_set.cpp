@@ -1,0 +1,121 @@
+#include "sim/contact/contact_set.h"
+
+#include <cmath>
+
+namespace vivify::sim {
+
+ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& parameters,
+                       const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
+                       const std::vector<ContactMemory>& memory)
+    : points_(&points), normal_{parameters.normal_stiffness, parameters.layer} {
+  for (int i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d y = points.position(i, x);
+    for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
+      const SurfacePoint nearest = colliders[c].nearest(y);
+      if (nearest.distance > reach) continue;
+      const double limit = memory[i].touching ? colliders[c].friction() * memory[i].normal_force : 0.0;
+      contacts_.push_back({i, c, nearest.position, nearest.normal, memory[i].anchor,
+                           Friction(parameters.friction_stiffness, limit)});
+    }
+  }
+}
+
+double ContactSet::energy(const Eigen::VectorXd& x) const {
+  double sum = 0;
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    sum += normal_.energy(contact.normal.dot(y - contact.origin));
+    sum += contact.friction.energy(tangential(contact, y - contact.anchor));
+  }
+  return sum;
+}
+
+void ContactSet::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const {
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    const Eigen::Vector3d g = -normal_.force(contact.normal.dot(y - contact.origin)) * contact.normal +
+                              contact.friction.gradient(tangential(contact, y - contact.anchor));
+    for (int k = 0; k < 4; ++k) {
+      gradient.segment<3>(3 * points_->vertices(contact.point, k)) += points_->weights(contact.point, k) * g;
+    }
+  }
+}
+
+template <class Block>
+void ContactSet::scatter(const Contact& contact, const Block& block, const std::vector<int>& slots,
+                         SymmetricMatrix& matrix) const {
+  static constexpr int kEntries = 12 * 13 / 2;
+  const int* slot = slots.data() + kEntries * contact.point;
+  double* values = matrix.values();
+  for (int column = 0; column < 12; ++column) {
+    for (int row = column; row < 12; ++row) {
+      values[*slot++] += points_->weights(contact.point, row / 3) * points_->weights(contact.point, column / 3) *
+                         block(row % 3, column % 3);
+    }
+  }
+}
+
+void ContactSet::add_hessian(const Eigen::VectorXd& x, const std::vector<int>& slots, SymmetricMatrix& matrix) const {
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
+    const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
+    const Eigen::Matrix3d block = normal_.second(contact.normal.dot(y - contact.origin)) * nn +
+                                  T * contact.friction.hessian(tangential(contact, y - contact.anchor)) * T;
+    if (block.isZero(0)) continue;
+    scatter(contact, block, slots, matrix);
+  }
+}
+
+void ContactSet::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l, const std::vector<int>& slots,
+                             SymmetricMatrix& matrix) const {
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x), w = points_->position(contact.point, l);
+    const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
+    const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
+    const Eigen::Vector3d u = tangential(contact, y - contact.anchor);
+    const Eigen::Matrix3d block =
+        normal_.third(contact.normal.dot(y - contact.origin)) * contact.normal.dot(w) * nn +
+        T * contact.friction.third(u, tangential(contact, w)) * T;
+    scatter(contact, block, slots, matrix);
+  }
+}
+
+Eigen::Vector3d ContactSet::total_force(const Eigen::VectorXd& x) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    sum += normal_.force(contact.normal.dot(y - contact.origin)) * contact.normal -
+           contact.friction.gradient(tangential(contact, y - contact.anchor));
+  }
+  return sum;
+}
+
+bool ContactSet::planes_hold(const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double tolerance) const {
+  for (const Contact& contact : contacts_) {
+    const double assumed = distance(contact, x);
+    if (assumed > normal_.layer + tolerance) continue;
+    const double actual = colliders[contact.collider].nearest(points_->position(contact.point, x)).distance;
+    if (std::abs(actual - assumed) > tolerance) return false;
+  }
+  return true;
+}
+
+void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemory>& memory) const {
+  std::vector<ContactMemory> next(memory.size());
+  for (const Contact& contact : contacts_) {
+    const double force = normal_force(contact, x);
+    ContactMemory& after = next[contact.point];
+    if (!(force > after.normal_force)) continue;  // with several colliders a point belongs to the one that presses most
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    after.touching = true;
+    after.normal_force = force;
+    after.anchor = y;
+    if (memory[contact.point].touching) {
+      after.anchor = y - contact.friction.return_map(tangential(contact, y - contact.anchor));
+    }
+  }
+  memory = std::move(next);
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,99 @@
+// Contacts of one body for one step: which points may touch which plane, where they are anchored, and the energy, force
+// and stiffness that follow (Coros et al. 2012, Section 3, with one-sided normal forces and a Coulomb limit).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "common/mesh.h"
+#include "sim/contact/collider.h"
+#include "sim/contact/friction.h"
+#include "sim/contact/normal_force.h"
+#include "sim/solve/sparse_matrix.h"
+
+namespace vivify::sim {
+
+// Points of a body that may touch: each a fixed combination of four vertices, so that the drawn surface itself touches.
+struct ContactPoints {
+  Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> vertices;
+  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;
+
+  int size() const { return static_cast<int>(vertices.rows()); }
+  Eigen::Vector3d position(int i, const Eigen::VectorXd& x) const {
+    Eigen::Vector3d y = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 4; ++k) y += weights(i, k) * x.segment<3>(3 * vertices(i, k));
+    return y;
+  }
+};
+
+// What a contact point remembers from step to step.
+struct ContactMemory {
+  bool touching = false;                                // the normal force was positive at the end of the last step
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();     // m
+  double normal_force = 0;                              // f_n at the end of the last step, N
+};
+
+struct ContactParameters {
+  double layer = 0;               // δ, m
+  double normal_stiffness = 0;    // N/m²
+  double friction_stiffness = 0;  // N/m
+};
+
+// One point against one plane, fixed for the step.
+struct Contact {
+  int point;
+  int collider;
+  Eigen::Vector3d origin, normal;  // plane of the nearest surface point
+  Eigen::Vector3d anchor;
+  Friction friction;
+};
+
+class ContactSet {
+ public:
+  ContactSet() = default;
+
+  // Planes for every point that can reach a collider: those nearer than `reach` at `x`. Friction acts where the point
+  // touched at the end of the last step.
+  ContactSet(const ContactPoints& points, const ContactParameters& parameters, const std::vector<Collider>& colliders,
+             const Eigen::VectorXd& x, double reach, const std::vector<ContactMemory>& memory);
+
+  const std::vector<Contact>& contacts() const { return contacts_; }
+
+  double energy(const Eigen::VectorXd& x) const;
+  void add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
+  void add_hessian(const Eigen::VectorXd& x, const std::vector<int>& slots, SymmetricMatrix& matrix) const;
+  // matrix += d/dε Hessian(x + ε l): the contact part of block A of equation (13).
+  void add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l, const std::vector<int>& slots,
+                   SymmetricMatrix& matrix) const;
+
+  double distance(const Contact& contact, const Eigen::VectorXd& x) const {
+    return contact.normal.dot(points_->position(contact.point, x) - contact.origin);
+  }
+  // Normal force of a contact, N.
+  double normal_force(const Contact& contact, const Eigen::VectorXd& x) const {
+    return normal_.force(distance(contact, x));
+  }
+  // Sum of the forces that the world exerts on the body, N.
+  Eigen::Vector3d total_force(const Eigen::VectorXd& x) const;
+
+  // Whether the planes still describe the colliders at x: no point in reach of the layer is farther than `tolerance` from
+  // the distance that its plane gives.
+  bool planes_hold(const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double tolerance) const;
+
+  // Memory after the step that ended at x: anchors set at first touch, dragged along by slip, dropped on release.
+  void update_memory(const Eigen::VectorXd& x, std::vector<ContactMemory>& memory) const;
+
+ private:
+  Eigen::Vector3d tangential(const Contact& contact, const Eigen::Vector3d& v) const {
+    return v - contact.normal * contact.normal.dot(v);
+  }
+  template <class Block>
+  void scatter(const Contact& contact, const Block& block, const std::vector<int>& slots, SymmetricMatrix& matrix) const;
+
+  const ContactPoints* points_ = nullptr;
+  NormalForce normal_ = {0, 0};
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace vivify::sim

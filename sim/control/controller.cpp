@@ -1,0 +1,33 @@
+#include "sim/control/controller.h"
+
+#include <array>
+
+#include "common/registry.h"
+#include "sim/control/controllers/hop.h"
+#include "sim/control/controllers/rest.h"
+
+namespace vivify::sim {
+namespace {
+
+constexpr std::array<ControllerEntry, 2> kControllers = {{
+    {"rest", rest_controller_schema, make_rest_controller},
+    {"hop", hop_controller_schema, make_hop_controller},
+}};
+
+}  // namespace
+
+std::span<const ControllerEntry> controllers() { return kControllers; }
+
+Schema controller_schema() {
+  Schema schema = variant("What the body tries to do.", "type").initially(kControllers.front().name.data());
+  for (const ControllerEntry& entry : kControllers) {
+    schema = std::move(schema).option(std::string(entry.name), entry.schema());
+  }
+  return schema;
+}
+
+std::unique_ptr<Controller> make_controller(const ControlledBody& body, const Value& settings) {
+  return find_entry(controllers(), settings["type"].as_string(), "controller").make(body, settings);
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,61 @@
+// A controller turns what the animator asks for into goals for one step (Coros et al. 2012, Sections 3 and 7).
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/schema.h"
+#include "sim/control/goal.h"
+
+namespace vivify::sim {
+
+// What a controller knows of its body, fixed for the run.
+struct ControlledBody {
+  const Eigen::VectorXd& mass;  // #V, kg
+  const Eigen::VectorXd& rest;  // 3 #V, m, as placed in the scene
+  double height;                // of the body at rest, m
+  double gravity;               // m/s²
+  double h;                     // step size, s
+};
+
+// What a controller sees at the start of a step.
+struct Observation {
+  const Eigen::VectorXd& x;          // 3 #V, m
+  const Eigen::VectorXd& v;          // 3 #V, m/s
+  double load;                       // sum of the normal forces of the last step, N
+};
+
+class Controller {
+ public:
+  virtual ~Controller() = default;
+
+  // Goals of the coming step. Advances the controller's clock by one step.
+  virtual std::vector<Goal> goals(const Observation& observation) = 0;
+
+  // What the controller is doing, for people: "thrust".
+  virtual std::string phase() const = 0;
+
+  // All that the next steps depend on, for an exact restart.
+  virtual Eigen::VectorXd state() const = 0;
+  virtual void restore(const Eigen::VectorXd& state) = 0;
+};
+
+struct ControllerEntry {
+  std::string_view name;
+  Schema (*schema)();
+  std::unique_ptr<Controller> (*make)(const ControlledBody& body, const Value& settings);
+};
+
+std::span<const ControllerEntry> controllers();
+
+// The setting `controller` of a body.
+Schema controller_schema();
+
+// The controller that `settings` (resolved with controller_schema) asks for. `body` must outlive it.
+std::unique_ptr<Controller> make_controller(const ControlledBody& body, const Value& settings);
+
+}  // namespace vivify::sim

@@ -1,0 +1,46 @@
+#include "sim/control/rigid_motion.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+namespace vivify::sim {
+
+Eigen::Vector3d centre_of_mass(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < mass.size(); ++i) sum += mass[i] * x.segment<3>(3 * i);
+  return sum / mass.sum();
+}
+
+Eigen::Matrix3d inertia_tensor(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
+  const Eigen::Vector3d centre = centre_of_mass(mass, x);
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    const Eigen::Vector3d r = x.segment<3>(3 * i) - centre;
+    inertia += mass[i] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+  }
+  return inertia;
+}
+
+Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::VectorXd& x, const Eigen::VectorXd& v) {
+  const Eigen::Vector3d centre = centre_of_mass(mass, x);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    const Eigen::Vector3d r = x.segment<3>(3 * i) - centre, vi = v.segment<3>(3 * i);
+    sum += mass[i] * r.cross(vi);
+  }
+  return sum;
+}
+
+Eigen::Matrix3d best_rotation(const Eigen::VectorXd& mass, const Eigen::VectorXd& rest, const Eigen::VectorXd& x) {
+  const Eigen::Vector3d rest_centre = centre_of_mass(mass, rest), centre = centre_of_mass(mass, x);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    covariance += mass[i] * (x.segment<3>(3 * i) - centre) * (rest.segment<3>(3 * i) - rest_centre).transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  signs[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,49 @@
+#include "sim/solve/forward_step.h"
+
+namespace vivify::sim {
+namespace {
+
+constexpr int kMaxIterations = 60;
+constexpr int kMaxHalvings = 30;
+constexpr double kArmijo = 1e-4;
+
+}  // namespace
+
+ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x, double tolerance,
+                           StepWorkspace& workspace) {
+  ForwardResult result;
+  result.at = problem.deformed_point(x);
+  Eigen::VectorXd c = problem.residual(result.at, rest);
+  const double weight = problem.body().weight;
+  double potential = problem.potential(result.at, rest);
+  for (;; ++result.iterations) {
+    result.residual = c.lpNorm<Eigen::Infinity>() / weight;
+    result.converged = result.residual <= tolerance;
+    if (result.converged || result.iterations == kMaxIterations || !std::isfinite(potential)) return result;
+
+    problem.stiffness(result.at, rest, workspace.D);
+    for (double shift = 1; !workspace.solver.factorize(workspace.D); shift *= 4) {
+      if (shift > 1e12) return result;
+      problem.add_inertia(shift, workspace.D);  // only the direction changes, not the equation that is solved
+    }
+    const Eigen::VectorXd step = -workspace.solver.solve(c);
+    const double slope = c.dot(step);
+    bool accepted = false;
+    double alpha = 1;
+    for (int halving = 0; halving < kMaxHalvings && !accepted; ++halving, alpha *= 0.5) {
+      DeformedPoint trial = problem.deformed_point(result.at.x + alpha * step);
+      const double trial_potential = problem.potential(trial, rest);
+      Eigen::VectorXd trial_c = problem.residual(trial, rest);
+      // Near the solution the potential is flat to rounding; there the residual itself must shrink.
+      accepted = trial_potential <= potential + kArmijo * alpha * slope || trial_c.norm() <= 0.5 * c.norm();
+      if (accepted) {
+        result.at = std::move(trial);
+        potential = trial_potential;
+        c = std::move(trial_c);
+      }
+    }
+    if (!accepted) return result;
+  }
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,32 @@
+// Implicit Euler for a fixed rest shape: solves c(x, q) = 0 by minimising the incremental potential with Newton's method.
+// It is the passive simulator, and the start and finish of every controlled step.
+#pragma once
+
+#include "sim/solve/linear_solver.h"
+#include "sim/solve/step_problem.h"
+
+namespace vivify::sim {
+
+struct ForwardResult {
+  DeformedPoint at;
+  int iterations = 0;
+  double residual = 0;  // ‖c‖∞ over the weight of the body
+  bool converged = false;
+};
+
+// What the solvers of one body share: the stiffness matrix and its factorisation.
+struct StepWorkspace {
+  explicit StepWorkspace(const SymmetricPattern& pattern) : D(pattern), block(pattern), solver(pattern) {}
+  SymmetricMatrix D;
+  SymmetricMatrix block;
+  LinearSolver solver;
+};
+
+// From `x`, until ‖c‖∞ ≤ tolerance · weight.
+ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x, double tolerance,
+                           StepWorkspace& workspace);
+
+inline constexpr double kStartTolerance = 1e-4;   // a feasible start need not be exact
+inline constexpr double kFinishTolerance = 1e-11;  // every step that is kept is exact physics
+
+}  // namespace vivify::sim

@@ -1,0 +1,46 @@
+#include "sim/solve/sparse_matrix.h"
+
+#include <algorithm>
+
+namespace vivify::sim {
+
+void SymmetricPattern::couple(const int* vertices, int count) {
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b < count; ++b) {
+      if (vertices[a] >= vertices[b]) blocks_.emplace(vertices[b], vertices[a]);
+    }
+  }
+}
+
+void SymmetricPattern::finish() {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(9 * blocks_.size());
+  for (const auto& [column, row] : blocks_) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        if (3 * row + i >= 3 * column + j) entries.emplace_back(3 * row + i, 3 * column + j, 0.0);
+      }
+    }
+  }
+  zeros_.resize(size(), size());
+  zeros_.setFromTriplets(entries.begin(), entries.end());
+  zeros_.makeCompressed();
+}
+
+int SymmetricPattern::slot(int row, int column) const {
+  const int* begin = zeros_.innerIndexPtr() + zeros_.outerIndexPtr()[column];
+  const int* end = zeros_.innerIndexPtr() + zeros_.outerIndexPtr()[column + 1];
+  const int* found = std::lower_bound(begin, end, row);
+  return found != end && *found == row ? static_cast<int>(found - zeros_.innerIndexPtr()) : -1;
+}
+
+void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<int>& slots) const {
+  for (int column = 0; column < 3 * count; ++column) {
+    for (int row = column; row < 3 * count; ++row) {
+      const int global_row = 3 * vertices[row / 3] + row % 3, global_column = 3 * vertices[column / 3] + column % 3;
+      slots.push_back(slot(std::max(global_row, global_column), std::min(global_row, global_column)));
+    }
+  }
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,106 @@
+// Lagrangian optimisation, Section 6 of Coros et al. 2012, with what makes it converge when contacts switch: a feasible
+// start, an L1 merit function with γ above the multipliers, second-order correction, and Levenberg–Marquardt damping of K
+// before any shortening of the step (a refused step is turned, not cut).
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/step_method.h"
+
+namespace vivify::sim {
+namespace {
+
+constexpr double kArmijo = 1e-4;
+constexpr double kMeritMargin = 1.2;
+
+}  // namespace
+
+StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
+                       StepWorkspace& workspace) {
+  const BodyModel& body = problem.body();
+  StepSolution solution;
+  solution.rest = problem.rest_point(q, true);
+  ForwardResult start = forward_step(problem, solution.rest, x, kStartTolerance, workspace);
+  solution.forward_iterations = start.iterations;
+  solution.at = std::move(start.at);
+
+  const double unit = body.weight * body.height;
+  double mu = 0, gamma = 0;
+  int small_gains = 0;
+  bool restored = false;  // a forward step was made at this iterate already
+  while (solution.iterations < body.solver.max_iterations) {
+    const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
+    if (!block.definite()) {
+      if (restored) break;
+      restored = true;
+      ForwardResult forward = forward_step(problem, solution.rest, solution.at.x, kStartTolerance, workspace);
+      solution.forward_iterations += forward.iterations;
+      solution.at = std::move(forward.at);
+      continue;
+    }
+    restored = false;
+    if (block.decrement() <= body.solver.decrement * unit &&
+        block.residual().lpNorm<Eigen::Infinity>() <= 10 * kStartTolerance * body.weight) {
+      solution.optimal = true;
+      break;
+    }
+    ++solution.iterations;
+
+    gamma = std::max(gamma, kMeritMargin * block.lambda().lpNorm<Eigen::Infinity>());
+    const double objective = problem.objective(solution.at.x, solution.rest);
+    const double infeasibility = block.residual().lpNorm<1>();
+    const double merit = objective + gamma * infeasibility;
+
+    // Accepts (x + dx, q + dq) when no element collapses and the merit function falls enough.
+    const auto try_step = [&](const Eigen::VectorXd& dx, const Eigen::VectorXd& dq, double wanted, Eigen::VectorXd* c) {
+      RestPoint rest = problem.rest_point(solution.rest.q + dq, false);
+      DeformedPoint at = problem.deformed_point(solution.at.x + dx);
+      if (rest.smallest_element < kSmallestRest || problem.smallest_element(at) < kSmallestDeformed) {
+        ++solution.guards;
+        return false;
+      }
+      *c = problem.residual(at, rest);
+      if (!(problem.objective(at.x, rest) + gamma * c->lpNorm<1>() <= merit + wanted)) return false;
+      solution.at = std::move(at);
+      solution.rest = std::move(rest);
+      return true;
+    };
+
+    bool accepted = false;
+    Eigen::VectorXd dq, dx, c;
+    for (int damping = 0; damping <= kMaxDampings && !accepted; ++damping) {
+      dq = limit_change(problem, block.step_q(mu));
+      dx = block.step_x(dq);
+      const double wanted = kArmijo * std::min(0.0, block.slope(dx, dq) - gamma * infeasibility);
+      c.resize(0);
+      accepted = try_step(dx, dq, wanted, &c);
+      if (!accepted && c.size() > 0) accepted = try_step(dx + block.correction(c), dq, wanted, &c);
+      if (accepted) {
+        if (damping == 0) mu = lower_damping(mu);
+      } else {
+        ++solution.halvings;
+        mu = raise_damping(mu);
+      }
+    }
+    for (int halving = 0; halving < kMaxStepHalvings && !accepted; ++halving) {
+      dq *= 0.5;
+      dx *= 0.5;
+      ++solution.halvings;
+      accepted = try_step(dx, dq, kArmijo * std::min(0.0, block.slope(dx, dq)), &c);
+    }
+    if (!accepted) break;
+
+    solution.rest = problem.rest_point(solution.rest.q, true);
+    const double now = problem.objective(solution.at.x, solution.rest);
+    const bool small = std::abs(objective - now) < kSmallGain * std::abs(objective) &&
+                       c.lpNorm<Eigen::Infinity>() <= 10 * kStartTolerance * body.weight;
+    small_gains = small ? small_gains + 1 : 0;
+    if (small_gains == 2) {
+      solution.optimal = true;
+      break;
+    }
+  }
+  finish_exactly(problem, solution, workspace);
+  return solution;
+}
+
+}  // namespace vivify::sim

@@ -1,0 +1,37 @@
+#include "sim/solve/step_method.h"
+
+#include <algorithm>
+#include <array>
+
+namespace vivify::sim {
+namespace {
+
+constexpr std::array<StepMethodEntry, 2> kMethods = {{
+    {"sqp", solve_sqp},
+    {"reduced", solve_reduced},
+}};
+
+}  // namespace
+
+std::span<const StepMethodEntry> step_methods() { return kMethods; }
+
+double raise_damping(double mu) { return std::max(1e-2, 6 * mu); }
+double lower_damping(double mu) { return mu < 1e-6 ? 0 : mu / 5; }
+
+Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
+  const double largest = (problem.body().rest.basis * dq).lpNorm<Eigen::Infinity>();
+  const double allowed = kLargestChange * problem.body().height;
+  if (largest > allowed) dq *= allowed / largest;
+  return dq;
+}
+
+void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace) {
+  const ForwardResult finish = forward_step(problem, solution.rest, solution.at.x, kFinishTolerance, workspace);
+  solution.at = finish.at;
+  solution.exact = finish.converged;
+  solution.residual = finish.residual;
+  solution.forward_iterations += finish.iterations;
+  solution.objective = problem.objective(solution.at.x, solution.rest);
+}
+
+}  // namespace vivify::sim
