@@ -1,4 +1,4 @@
-"""Writers and readers of the two file formats the generators need: GLB (binary glTF 2.0) and PNG. Same input, same bytes."""
+"""Writers and readers of the file formats the generators need: GLB (binary glTF 2.0), PNG, EXR. Same input, same bytes."""
 
 import json
 import struct
@@ -131,3 +131,30 @@ def read_png(data):
     width, height = size
     rows = np.frombuffer(zlib.decompress(body), np.uint8).reshape(height, width + 1)
     return np.cumsum(rows[:, 1:], axis=1, dtype=np.uint8), palette
+
+
+def exr_bytes(pixels):
+    """Bytes of an uncompressed EXR with half-float scanlines. pixels: H by W by 3, linear RGB."""
+    height, width, _ = pixels.shape
+    box = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    channels = b"".join(name + b"\0" + struct.pack("<iiii", 1, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    attributes = [
+        (b"channels", b"chlist", channels), (b"compression", b"compression", b"\0"), (b"dataWindow", b"box2i", box),
+        (b"displayWindow", b"box2i", box), (b"lineOrder", b"lineOrder", b"\0"),
+        (b"pixelAspectRatio", b"float", struct.pack("<f", 1)), (b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)),
+        (b"screenWindowWidth", b"float", struct.pack("<f", 1)),
+    ]
+    header = struct.pack("<ii", 20000630, 2)
+    header += b"".join(n + b"\0" + t + b"\0" + struct.pack("<i", len(v)) + v for n, t, v in attributes) + b"\0"
+    rows = [struct.pack("<ii", y, width * 6) + pixels[y, :, ::-1].T.astype("<f2").tobytes() for y in range(height)]
+    first = len(header) + 8 * height
+    table = struct.pack(f"<{height}q", *(first + y * len(rows[0]) for y in range(height)))
+    return header + table + b"".join(rows)
+
+
+def read_exr(data):
+    """Pixels (H by W by 3) of an EXR written by exr_bytes."""
+    start = data.index(b"dataWindow\0box2i\0") + 17 + 4
+    width, height = (x + 1 for x in struct.unpack_from("<4i", data, start)[2:])
+    rows = np.frombuffer(data[len(data) - height * (width * 6 + 8):], np.uint8).reshape(height, -1)[:, 8:]
+    return np.ascontiguousarray(rows).view("<f2").reshape(height, 3, width).transpose(0, 2, 1)[..., ::-1].astype(float)

@@ -1,10 +1,11 @@
-"""What stands around the cup: the table top (its top is the plane y = 0) and the curved backdrop behind it."""
+"""What stands around the cup: the table top (its top is the plane y = 0) and the room's light."""
 
 import numpy as np
 
 import wood
 
 HALF, CORNER, EDGE, THICK = 7.0, 1.2, 0.16, 0.75  # half side, radius of the corners, of the edge, thickness (m)
+GLOW = (-0.50, 0.16, -0.85)  # direction in which the wall is brightest
 
 
 def rounded_square(half, corner, per_corner=12):
@@ -46,17 +47,20 @@ def table():
     return vertices, np.array(triangles), uv
 
 
-def backdrop():
-    """Vertices and triangles of a sheet that rises behind the table in one curve, bent around it."""
-    floor, radius, bend, top = -6.0, 17.0, 7.0, 22.0
-    path = [(2.0, floor), (radius - bend, floor)]
-    path += [(radius - bend + bend * np.sin(a), floor + bend * (1 - np.cos(a))) for a in np.linspace(0, np.pi / 2, 17)[1:]]
-    path += [(radius, y) for y in np.linspace(floor + bend, top, 6)[1:]]
-    angles = np.radians(np.linspace(150, 390, 61))  # from +x over −z to −x; open towards +z
-    vertices = np.array([(r * np.cos(a), y, r * np.sin(a)) for a in angles for r, y in path])
-    n, triangles = len(path), []
-    for i in range(len(angles) - 1):
-        for j in range(n - 1):
-            a, b, c, d = i * n + j, i * n + j + 1, (i + 1) * n + j + 1, (i + 1) * n + j
-            triangles += [(a, b, c), (a, c, d)]
-    return vertices, np.array(triangles)
+def surroundings():
+    """Radiance of the room in all directions (H by W by 3, linear): latitude and longitude, top +y, middle -z.
+
+    A warm dusky room with a cool ceiling and a glow on the wall behind the cup, as the camera of the scene sees it.
+    """
+    height = 128
+    theta = np.pi * (np.arange(height) + 0.5) / height
+    phi = np.pi * ((np.arange(2 * height) + 0.5) / height - 1)
+    way = np.stack(np.broadcast_arrays(np.sin(theta)[:, None] * np.sin(phi), np.cos(theta)[:, None],
+                                       -np.sin(theta)[:, None] * np.cos(phi)), axis=-1)
+    up = way[..., 1:2]
+    wall, ceiling, floor = (np.array(c) for c in ((0.30, 0.25, 0.20), (0.34, 0.37, 0.42), (0.10, 0.07, 0.05)))
+    room = np.where(up > 0, wall + (ceiling - wall) * np.maximum(up, 0)**0.8,
+                    wall + (floor - wall) * np.minimum(1, -up / 0.45))
+    middle = np.array(GLOW) / np.linalg.norm(GLOW)
+    apart = np.sum((way - middle)**2, axis=-1, keepdims=True)
+    return room + np.array([0.80, 0.57, 0.38]) * np.exp(-apart / 0.45**2)

@@ -64,5 +64,5 @@ def make():
     colours = np.where(ramp < 0.55, light + (middle - light) * ramp / 0.55, middle + (dark - middle) * (ramp - 0.55) / 0.45)
     palette = []
     for t in np.linspace(-1, 1, TINTS):
-        palette.append(colours * (1 + 0.09 * t * np.array([1.0, 1.05, 1.25])))
+        palette.append(colours * (1 + 0.09 * t * np.array([1.15, 1.0, 0.9])))
     return indices, np.clip(np.round(np.concatenate(palette)), 0, 255).astype(np.uint8)
