@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -118,16 +118,6 @@ void verify(const fs::path& file, std::size_t frames, const fs::path& output) {
 std::string kept(const fs::path& folder) { return "the frames are kept in " + folder.string(); }
 
 }  // namespace
-
-FrameRate frame_rate(double fps) {
-  for (int denominator = 1; fps > 0 && fps < 1e6 && denominator <= 1001; ++denominator) {
-    const double numerator = std::round(fps * denominator);
-    if (numerator > 0 && std::abs(numerator / denominator - fps) <= 1e-6) {
-      return {static_cast<int>(numerator), denominator};
-    }
-  }
-  throw Error(ErrorKind::usage, "a frame rate of " + std::to_string(fps) + " per second cannot be encoded");
-}
 
 void require_ffmpeg(const fs::path& frames_folder) {
   if (!find_program("ffmpeg").empty()) return;

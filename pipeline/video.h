@@ -14,10 +14,6 @@ struct FrameRate {
   int denominator = 1;
 };
 
-// The fraction with the smallest denominator (at most 1001) that is nearest to `fps`: 24 is 24/1, 23.976 is
-// 2997/125. Throws Error(usage) when `fps` is not positive or none is within a millionth of it.
-FrameRate frame_rate(double fps);
-
 struct VideoSettings {
   FrameRate rate;
   int crf = 18;               // quality of x264: 0 is lossless, 51 the worst

@@ -1,0 +1,33 @@
+#include "pipeline/camera_path.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace vivify::pipeline {
+
+Points camera_displacements(const Points& path, double window, bool follow_height) {
+  const Eigen::Index count = path.rows();
+  const Eigen::Index last = count - 1;
+  // Beyond an end the path is turned about its end point; beyond its whole length it rests there.
+  const auto at = [&](Eigen::Index i) -> Eigen::RowVector3d {
+    if (i < 0) return 2 * path.row(0) - path.row(std::min(-i, last));
+    if (i > last) return 2 * path.row(last) - path.row(std::max<Eigen::Index>(2 * last - i, 0));
+    return path.row(i);
+  };
+  const auto reach = static_cast<Eigen::Index>(std::ceil(window / 2)) - 1;
+  Points displacements(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::RowVector3d sum = at(i);
+    double weights = 1;
+    for (Eigen::Index k = 1; k <= reach; ++k) {
+      const double weight = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(k) / window);
+      sum += weight * (at(i - k) + at(i + k));
+      weights += 2 * weight;
+    }
+    displacements.row(i) = sum / weights - path.row(0);
+  }
+  if (!follow_height) displacements.col(1).setZero();
+  return displacements;
+}
+
+}  // namespace vivify::pipeline

@@ -1,0 +1,134 @@
+#include "pipeline/commands.h"
+
+#include <charconv>
+#include <iostream>
+
+#include "common/error.h"
+#include "common/file.h"
+#include "common/log.h"
+#include "common/parallel.h"
+#include "pipeline/diff.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/runner.h"
+#include "pipeline/scene_file.h"
+#include "pipeline/sheet.h"
+#include "render/scene.h"
+
+namespace vivify::pipeline {
+namespace {
+
+void print_errors(const std::vector<Error>& errors) {
+  for (const Error& error : errors) std::cerr << error.full_text() << "\n";
+}
+
+// "480x270" as a setting of the scene.
+std::string size_override(const std::string& size) {
+  int width = 0;
+  int height = 0;
+  const char* end = size.data() + size.size();
+  const auto [cross, width_error] = std::from_chars(size.data(), end, width);
+  if (width_error == std::errc() && cross != end && *cross == 'x') {
+    const auto [stop, height_error] = std::from_chars(cross + 1, end, height);
+    if (height_error == std::errc() && stop == end) {
+      return "render.size=[" + std::to_string(width) + ", " + std::to_string(height) + "]";
+    }
+  }
+  throw Error(ErrorKind::usage, "--size " + size + " is not a size", "write it like 480x270");
+}
+
+// Later wins: scene file < --quality < --set < the special options.
+std::vector<std::string> overrides_of(const SceneCommand& command) {
+  std::vector<std::string> overrides;
+  if (!command.quality.empty()) overrides = render::quality_overrides(command.quality);
+  overrides.insert(overrides.end(), command.set.begin(), command.set.end());
+  if (command.spp > 0) overrides.push_back("render.spp=" + std::to_string(command.spp));
+  if (!command.size.empty()) overrides.push_back(size_override(command.size));
+  return overrides;
+}
+
+void print_plan(const Job& job, const RunOptions& options) {
+  std::cout << "Output folder: " << job.out.string() << "\n";
+  for (const StagePlan& stage : plan(job, options)) {
+    std::cout << stage.stage->name << ": ";
+    if (stage.missing.empty()) {
+      std::cout << "nothing to do (" << stage.products.size() << " files are there)\n";
+    } else {
+      std::cout << stage.missing.size() << " of " << stage.products.size() << " files to make: "
+                << stage.missing.front().file;
+      if (stage.missing.size() > 1) std::cout << " ... " << stage.missing.back().file;
+      std::cout << "\n";
+    }
+  }
+}
+
+}  // namespace
+
+int run_stages_command(const SceneCommand& command, const std::string& last_stage) {
+  if (command.threads > 0) set_thread_count(command.threads);
+  std::vector<Error> errors;
+  const std::optional<Scene> scene = load_scene(command.scene, overrides_of(command), errors);
+  if (!scene) {
+    print_errors(errors);
+    return exit_code(errors.front().kind());
+  }
+  Job job{*scene, command.out.empty() ? std::filesystem::path("out") / scene->name : command.out,
+          command.frames.empty() ? all_frames(scene->frame_count) : parse_frames(command.frames, scene->frame_count),
+          scene->frame_count};
+  // Pictures need the whole simulation (docs/decisions/0005-whole-simulation.md); `simulate` alone may stop earlier.
+  if (last_stage == "simulate") job.simulate_to = job.frames.back();
+  const RunOptions options = {last_stage, command.force};
+
+  if (command.dry_run) {
+    print_plan(job, options);
+    return 0;
+  }
+  const bool json = command.progress == ProgressStyle::json;
+  const std::unique_ptr<Progress> progress =
+      make_progress(command.quiet && !json ? ProgressStyle::none : command.progress);
+  const std::vector<StageReport> reports = run(job, options, *progress);
+  if (last_stage == "encode" && !json && !command.quiet) {
+    std::cout << (job.out / (scene->name + ".mp4")).string() << "\n";
+  }
+  return 0;
+}
+
+int check_command(const CheckCommand& command) {
+  std::vector<Error> errors;
+  for (const std::filesystem::path& file : command.scenes) {
+    try {
+      load_scene(file, command.set, errors);
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  }
+  print_errors(errors);
+  return errors.empty() ? 0 : exit_code(errors.front().kind());
+}
+
+int schema_command(bool as_markdown) {
+  const Schema schema = scene_schema();
+  std::cout << (as_markdown ? markdown(schema) : json_schema(schema, "vivify scene"));
+  return 0;
+}
+
+int sheet_command(const SheetCommand& command) {
+  SheetSettings settings;
+  settings.columns = command.columns;
+  settings.frames = command.count;
+  settings.width = command.width;
+  const std::filesystem::path output = command.output.empty() ? command.folder / "sheet.png" : command.output;
+  write_file_atomic(output, contact_sheet(command.folder, settings));
+  std::cout << output.string() << "\n";
+  return 0;
+}
+
+int diff_command(const DiffCommand& command) {
+  DiffSettings settings;
+  settings.limits.exact = command.exact;
+  settings.heat_map = command.heat_map;
+  const DiffReport report = diff(command.ref, command.test, settings);
+  std::cout << text(report);
+  return report.same() ? 0 : 1;
+}
+
+}  // namespace vivify::pipeline

@@ -1,0 +1,54 @@
+// The commands of the program, without the reading of arguments. Each returns an exit code or throws Error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/progress.h"
+
+namespace vivify::pipeline {
+
+// run, mesh, weights, simulate, render, encode.
+struct SceneCommand {
+  std::filesystem::path scene;
+  std::filesystem::path out;  // empty: out/NAME
+  std::string frames;         // empty: all
+  std::string quality;
+  int spp = 0;       // 0: as the scene says
+  std::string size;  // "480x270"
+  std::vector<std::string> set;
+  int threads = 0;
+  std::string force;  // "", "all" or a stage
+  bool dry_run = false;
+  bool quiet = false;
+  ProgressStyle progress = ProgressStyle::automatic;
+};
+int run_stages_command(const SceneCommand& command, const std::string& last_stage);
+
+struct CheckCommand {
+  std::vector<std::filesystem::path> scenes;
+  std::vector<std::string> set;
+};
+int check_command(const CheckCommand& command);
+
+int schema_command(bool as_markdown);
+
+struct SheetCommand {
+  std::filesystem::path folder;
+  std::filesystem::path output;  // empty: folder/sheet.png
+  int count = 16;
+  int columns = 4;
+  int width = 1280;
+};
+int sheet_command(const SheetCommand& command);
+
+struct DiffCommand {
+  std::filesystem::path ref;
+  std::filesystem::path test;
+  bool exact = false;
+  std::filesystem::path heat_map;  // PNG file; empty: none
+};
+int diff_command(const DiffCommand& command);
+
+}  // namespace vivify::pipeline

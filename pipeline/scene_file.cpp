@@ -1,0 +1,250 @@
+#include "pipeline/scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "common/config.h"
+#include "common/file.h"
+#include "common/text.h"
+#include "render/scene.h"
+
+namespace vivify::pipeline {
+namespace {
+
+constexpr double kMostFrames = 1'000'000;
+
+Schema looks_schema() {
+  return dictionary("Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
+                    "that is not named; without it such a part is grey.",
+                    string("Name of a material."));
+}
+
+// Keys of everything that is placed in the world from a mesh file.
+Schema placed(std::string doc) {
+  return object(std::move(doc))
+      .field("name", string("Name of the object: letters, digits, '-' and '_'.").required())
+      .field("mesh", path("Surface: OBJ, PLY, OFF, STL, glTF or GLB, in metres, +Y up.").required())
+      .field("position", vector("Where the origin of the asset is put.", 3).unit("m").initially({0, 0, 0}))
+      .field("scale", number("Size factor, applied first.").above(0).initially(1.0))
+      .field("heading_deg", number("Turn about +Y, applied after the scale; 0 looks along +Z, 90 along +X.")
+                                .unit("deg")
+                                .initially(0.0))
+      .field("looks", looks_schema());
+}
+
+Schema body_schema() {
+  return placed("A soft character or object.");
+}
+
+Schema collider_schema() {
+  return placed("A fixed object that bodies touch.")
+      .field("friction", number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
+      .field("visible", boolean("Whether it is drawn.").initially(true));
+}
+
+Schema frames_schema() {
+  return object("Length and time steps of the video. Frame 1 is t = 0.")
+      .field("fps", integer("Frames per second.").unit("1/s").at_least(1).at_most(1000).initially(24))
+      .field("duration_s", number("Length of the video.").unit("s").above(0).initially(4.0))
+      .field("steps_per_frame",
+             integer("Simulation steps per frame; the time step is 1/(fps steps_per_frame).")
+                 .at_least(1)
+                 .at_most(10000)
+                 .initially(2));
+}
+
+// The camera of the renderer with the keys that this module adds.
+Schema following_camera_schema() {
+  return render::camera_schema()
+      .field("follow_smooth_s", number("Width of the window that smooths the path of the followed body; 0 follows it "
+                                       "rigidly.")
+                                    .unit("s")
+                                    .at_least(0)
+                                    .initially(1.0))
+      .field("follow_height", boolean("Whether the camera also follows up and down.").initially(false));
+}
+
+// Calls visit(schema, value, path) for every setting below a value.
+using Visitor = std::function<void(const Schema&, const Value&, const std::string&)>;
+void walk(const Schema& schema, const Value& value, const std::string& name, const Visitor& visit) {
+  visit(schema, value, name);
+  const auto below = [&](const std::string& key) { return name.empty() ? key : name + "." + key; };
+  switch (schema.kind) {
+    case Schema::Kind::object:
+      if (value.kind() != Value::Kind::map) return;
+      for (const auto& [key, field] : schema.fields) walk(field, value[key], below(key), visit);
+      return;
+    case Schema::Kind::variant:
+      if (value.kind() != Value::Kind::map) return;
+      for (const auto& [option, fields] : schema.options) {
+        if (value[schema.tag].as_string() == option) walk(fields, value, name, visit);
+      }
+      return;
+    case Schema::Kind::list:
+      if (value.kind() != Value::Kind::list) return;
+      for (std::size_t i = 0; i < value.items().size(); ++i) {
+        walk(*schema.item, value.items()[i], name + "[" + std::to_string(i) + "]", visit);
+      }
+      return;
+    case Schema::Kind::dictionary:
+      if (value.kind() != Value::Kind::map) return;
+      for (const auto& [key, item] : value.entries()) walk(*schema.item, item, below(key), visit);
+      return;
+    default: return;
+  }
+}
+
+// Checks what ties settings to one another and to files.
+class SemanticCheck {
+ public:
+  SemanticCheck(const Scene& scene, std::vector<Error>& errors) : scene_(scene), errors_(errors) {}
+
+  void run(const Schema& schema) {
+    walk(schema, scene_.settings, "", [&](const Schema& setting, const Value& value, const std::string& name) {
+      if (setting.kind == Schema::Kind::path && !value.is_null()) file_exists(value, name);
+    });
+    names();
+    looks();
+    camera();
+    frames();
+  }
+
+ private:
+  void fail(const Value& value, const std::string& message, const std::string& hint = {}) {
+    errors_.emplace_back(ErrorKind::usage, message, hint, value.where());
+  }
+
+  void file_exists(const Value& value, const std::string& name) {
+    const std::filesystem::path path = scene_.resolve_path(value.as_string());
+    std::error_code error;
+    if (std::filesystem::is_regular_file(path, error)) return;
+    fail(value, name + " = " + value.as_string() + ": there is no file " + path.lexically_normal().string(),
+         "paths are relative to the scene file");
+  }
+
+  void names() {
+    std::map<std::string, std::string> seen;
+    each_placed([&](const Value& item, const std::string& where) {
+      const Value& name = item["name"];
+      const std::string& text = name.as_string();
+      const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+        return (c < 128 && std::isalnum(c) != 0) || c == '-' || c == '_';
+      });
+      if (!plain) {
+        fail(name, where + ".name = '" + text + "' must be made of letters, digits, '-' and '_'", "it names files");
+      }
+      const auto [entry, fresh] = seen.emplace(text, where);
+      if (!fresh && entry->second.substr(0, entry->second.find('[')) != where.substr(0, where.find('['))) {
+        fail(name, where + ".name = '" + text + "' is the name of " + entry->second + " already");
+      }
+    });
+  }
+
+  void looks() {
+    std::vector<std::string> materials;
+    for (const auto& [name, material] : scene_.settings["materials"].entries()) materials.push_back(name);
+    each_placed([&](const Value& item, const std::string& where) {
+      for (const auto& [part, material] : item["looks"].entries()) {
+        if (std::find(materials.begin(), materials.end(), material.as_string()) != materials.end()) continue;
+        fail(material, where + ".looks." + part + " = " + material.as_string() + ": there is no such material",
+             suggestion(material.as_string(), materials));
+      }
+    });
+  }
+
+  void camera() {
+    const Value& follow = scene_.settings["camera"]["follow"];
+    if (follow.is_null()) return;
+    std::vector<std::string> bodies;
+    for (const Value& body : scene_.settings["bodies"].items()) bodies.push_back(body["name"].as_string());
+    if (std::find(bodies.begin(), bodies.end(), follow.as_string()) == bodies.end()) {
+      fail(follow, "camera.follow = " + follow.as_string() + ": there is no such body",
+           suggestion(follow.as_string(), bodies));
+    }
+  }
+
+  void frames() {
+    const Value& frames = scene_.settings["frames"];
+    const double count = frames["duration_s"].as_number() * frames["fps"].as_number();
+    if (!(std::round(count) >= 1)) {
+      fail(frames["duration_s"], "frames.duration_s = " + number_text(frames["duration_s"].as_number()) +
+                                     " s is shorter than one frame");
+    } else if (count > kMostFrames) {
+      fail(frames["duration_s"], "frames.duration_s = " + number_text(frames["duration_s"].as_number()) +
+                                     " s makes more than a million frames");
+    }
+  }
+
+  static std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+    const std::string nearest = nearest_word(word, known);
+    if (!nearest.empty()) return "did you mean '" + nearest + "'?";
+    return known.empty() ? "" : "known: " + join_words(known);
+  }
+
+  void each_placed(const std::function<void(const Value&, const std::string&)>& visit) {
+    for (const char* list : {"bodies", "colliders", "props"}) {
+      const Value& items = scene_.settings[list];
+      for (std::size_t i = 0; i < items.items().size(); ++i) {
+        visit(items.items()[i], std::string(list) + "[" + std::to_string(i) + "]");
+      }
+    }
+  }
+
+  const Scene& scene_;
+  std::vector<Error>& errors_;
+};
+
+}  // namespace
+
+Schema scene_schema() {
+  return object("A vivify scene.")
+      .field("version", integer("Version of the scene format.").at_least(1).at_most(1).required())
+      .field("frames", frames_schema())
+      .field("gravity", vector("Acceleration of gravity.", 3).unit("m/s²").initially({0, -9.81, 0}))
+      .field("materials", dictionary("Looks, by name.", render::material_schema()))
+      .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
+      .field("colliders", list("Fixed objects that bodies touch.", collider_schema()))
+      .field("props", list("Objects that are drawn only.", placed("A fixed object that is drawn only.")))
+      .field("camera", following_camera_schema())
+      .field("lights", list("Lights. Without any, a uniform white environment.", render::light_schema()))
+      .field("render", render::render_schema());
+}
+
+std::filesystem::path Scene::resolve_path(const std::string& path) const { return folder / path; }
+
+std::optional<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                std::vector<Error>& errors) {
+  const std::size_t errors_before = errors.size();
+  ConfigNode root = parse_yaml(read_text_file(file), file.string(), errors);
+  if (errors.size() > errors_before) return std::nullopt;
+  for (const std::string& assignment : overrides) {
+    try {
+      apply_override(root, assignment);
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  }
+  if (errors.size() > errors_before) return std::nullopt;
+
+  const Schema schema = scene_schema();
+  Scene scene;
+  scene.file = file;
+  scene.folder = file.parent_path();
+  scene.name = file.stem().string();
+  scene.settings = resolve(schema, root, errors);
+  if (errors.size() > errors_before) return std::nullopt;
+
+  SemanticCheck(scene, errors).run(schema);
+  if (errors.size() > errors_before) return std::nullopt;
+
+  const Value& frames = scene.settings["frames"];
+  scene.fps = static_cast<int>(frames["fps"].as_integer());
+  scene.steps_per_frame = static_cast<int>(frames["steps_per_frame"].as_integer());
+  scene.frame_count = static_cast<int>(std::lround(frames["duration_s"].as_number() * scene.fps));
+  scene.resolved = scene.settings.yaml();
+  return scene;
+}
+
+}  // namespace vivify::pipeline

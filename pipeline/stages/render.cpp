@@ -1,0 +1,192 @@
+// render: one multi-layer EXR per frame.
+#include "render/render.h"
+
+#include "common/hdf5_file.h"
+#include "meshing/embedding.h"
+#include "pipeline/camera_path.h"
+#include "pipeline/content_key.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/placement.h"
+#include "pipeline/stages/stages.h"
+#include "render/scene.h"
+
+namespace vivify::pipeline {
+namespace {
+
+constexpr long kUnitsPerFrame = 100;
+
+// A setting that the scene does not give, from its YAML text.
+Value built_in(const Schema& schema, const std::string& yaml) {
+  std::vector<Error> errors;
+  const ConfigNode node = parse_yaml(yaml, "built-in", errors);
+  Value value = errors.empty() ? resolve(schema, node, errors) : Value();
+  if (!errors.empty()) throw Error(ErrorKind::internal, errors.front().full_text());
+  return value;
+}
+
+render::Looks make_looks(const Scene& scene) {
+  render::Looks looks;
+  looks.folder = scene.folder;
+  for (const auto& [name, material] : scene.settings["materials"].entries()) looks.materials[name] = material;
+  looks.materials[kDefaultMaterial] = built_in(render::material_schema(), "{type: diffuse}");
+  looks.lights = scene.settings["lights"].items();
+  if (looks.lights.empty()) looks.lights = {built_in(render::light_schema(), "{type: environment}")};
+  return looks;
+}
+
+bool is_drawn(const Value& item) { return !item.has("visible") || item["visible"].as_bool(); }
+
+// Colliders and props that are drawn.
+std::vector<Value> fixed_objects(const Scene& scene) {
+  std::vector<Value> objects;
+  for (const char* list : {"colliders", "props"}) {
+    for (const Value& item : scene.settings[list].items()) {
+      if (is_drawn(item)) objects.push_back(item);
+    }
+  }
+  return objects;
+}
+
+// Everything that a picture depends on, but for its number.
+std::string looks_key(const Job& job) {
+  const Scene& scene = job.scene;
+  ContentKey key("render");
+  key.add("simulation", simulation_key(job));
+  for (const char* part : {"materials", "camera", "lights", "render"}) key.add(part, scene.settings[part]);
+  // The smoothed path of the camera depends on the frames to come.
+  if (scene.settings["camera"].has("follow")) key.add("frames", scene.frame_count);
+  for (const Value& body : scene.settings["bodies"].items()) key.add("looks", body["looks"]);
+  for (const Value& object : fixed_objects(scene)) {
+    for (const char* part : {"position", "scale", "heading_deg", "looks"}) key.add(part, object[part]);
+    key.add_file(scene.resolve_path(object["mesh"].as_string()));
+  }
+  for (const std::filesystem::path& file : render::referenced_files(make_looks(scene))) key.add_file(file);
+  return key.hex();
+}
+
+std::vector<Product> products(const Job& job) {
+  const std::vector<std::string> keys = frame_keys(job);
+  std::vector<Product> products;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    products.push_back({picture_file(job.scene, job.frames[i]), keys[i], kUnitsPerFrame});
+  }
+  return products;
+}
+
+// A body as drawn: its surface moves with the simulation mesh.
+struct DrawnBody {
+  std::string name;
+  render::Mesh mesh;
+  meshing::Embedding embedding;
+  Tetrahedra T;
+  Eigen::VectorXd mass;
+};
+
+DrawnBody load_body(const Job& job, const Value& body) {
+  const Hdf5Reader file(job.out / mesh_file(body));
+  DrawnBody drawn;
+  drawn.name = body["name"].as_string();
+  drawn.T = file.int_matrix("/elements");
+  drawn.mass = file.vector("/mass");
+  drawn.embedding.tet = file.int_vector("/embedding/tet");
+  drawn.embedding.weights = file.matrix("/embedding/weights");
+  drawn.mesh.name = drawn.name;
+  drawn.mesh.F = file.int_matrix("/surface/F");
+  if (file.has("/surface/UV")) drawn.mesh.UV = file.matrix("/surface/UV");
+  if (file.has("/surface/face_part")) drawn.mesh.face_part = file.int_vector("/surface/face_part");
+  std::vector<std::string> part_names;
+  if (file.has("/surface/part_names")) part_names = file.texts("/surface/part_names");
+  drawn.mesh.part_materials = part_materials(body, part_names);
+  return drawn;
+}
+
+render::Mesh load_fixed(const Scene& scene, const Value& object) {
+  TriangleMesh surface = read_placed_mesh(scene, object);
+  render::Mesh mesh;
+  mesh.name = object["name"].as_string();
+  mesh.part_materials = part_materials(object, surface.part_names);
+  mesh.V = std::move(surface.V);
+  mesh.F = std::move(surface.F);
+  mesh.UV = std::move(surface.UV);
+  mesh.face_part = std::move(surface.face_part);
+  return mesh;
+}
+
+Points body_positions(const Job& job, int frame, const std::string& body) {
+  return Hdf5Reader(job.out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
+}
+
+// Displacement of the camera in every frame of the scene (#frames by 3).
+Points camera_motion(const Job& job, const std::vector<DrawnBody>& bodies) {
+  const Value& camera = job.scene.settings["camera"];
+  if (!camera.has("follow")) return Points::Zero(job.scene.frame_count, 3);
+  for (const DrawnBody& body : bodies) {
+    if (body.name != camera["follow"].as_string()) continue;
+    Points path(job.scene.frame_count, 3);
+    for (int frame = 1; frame <= job.scene.frame_count; ++frame) {
+      const Points x = body_positions(job, frame, body.name);
+      path.row(frame - 1) = (body.mass.transpose() * x) / body.mass.sum();
+    }
+    return camera_displacements(path, camera["follow_smooth_s"].as_number() * job.scene.fps,
+                                camera["follow_height"].as_bool());
+  }
+  throw Error(ErrorKind::internal, "the camera follows a body that is not there");
+}
+
+void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
+  const Scene& scene = job.scene;
+  render::Frame frame;
+  std::vector<DrawnBody> bodies;
+  for (const Value& body : scene.settings["bodies"].items()) {
+    bodies.push_back(load_body(job, body));
+    frame.meshes.push_back(bodies.back().mesh);
+  }
+  for (const Value& object : fixed_objects(scene)) frame.meshes.push_back(load_fixed(scene, object));
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) frame.meshes[i].object_id = static_cast<int>(i) + 1;
+
+  const render::Renderer renderer(make_looks(scene));
+  const render::RenderSettings settings = render::make_settings(scene.settings["render"]);
+  const render::Camera camera = render::make_camera(scene.settings["camera"]);
+  const Points motion = camera_motion(job, bodies);
+
+  auto product = missing.begin();
+  for (const int number : job.frames) {
+    if (product == missing.end()) break;
+    if (picture_file(scene, number) != product->file) continue;
+    frame.number = number;
+    frame.camera = camera;
+    frame.camera.position += motion.row(number - 1).transpose();
+    frame.camera.target += motion.row(number - 1).transpose();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      frame.meshes[i].V =
+          meshing::interpolate(bodies[i].embedding, bodies[i].T, body_positions(job, number, bodies[i].name));
+    }
+    const std::string note = "frame " + std::to_string(number);
+    long shown = 0;
+    const render::Film film = renderer.render(frame, settings, [&](double share) {
+      const long reached = std::min(static_cast<long>(share * kUnitsPerFrame), kUnitsPerFrame - 1);
+      if (reached > shown) progress.advance(reached - shown, note);
+      shown = std::max(shown, reached);
+    });
+    ledger.commit(product->file, product->key, render::encode_exr(film));
+    progress.advance(kUnitsPerFrame - shown, note);
+    ++product;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> frame_keys(const Job& job) {
+  const std::string base = looks_key(job);
+  std::vector<std::string> keys;
+  for (const int frame : job.frames) keys.push_back(Hasher().add(base).add(std::to_string(frame)).hex());
+  return keys;
+}
+
+std::string picture_file(const Scene& scene, int frame) {
+  return "render/" + scene.name + "." + frame_text(frame) + ".exr";
+}
+
+Stage render_stage() { return {"render", "Everything up to the pictures (EXR)", products, make}; }
+
+}  // namespace vivify::pipeline
