@@ -7,10 +7,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <vector>
 
 #include "common/error.h"
-#include "common/log.h"
 #include "common/stop.h"
 #include "pipeline/child_process.h"
 #include "render/image_io.h"
@@ -95,24 +95,59 @@ std::string tail(const std::string& output) {
   return text.empty() ? "it said nothing" : text;
 }
 
-// Throws when `file` is empty or, asked of ffprobe when it is there, does not hold `frames` pictures.
-void verify(const fs::path& file, std::size_t frames, const fs::path& output) {
+// A big-endian number of `bytes` bytes at `place`; 0 behind the end of the file.
+std::uint64_t number_at(std::ifstream& file, std::uint64_t place, int bytes) {
+  std::uint64_t value = 0;
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(place));
+  for (int i = 0; i < bytes; ++i) value = value << 8 | static_cast<std::uint64_t>(file.get() & 0xff);
+  return file ? value : 0;
+}
+
+// Number of pictures in the MP4 boxes of [begin, end) of a file: the sample counts of their `stsz` boxes
+// (ISO/IEC 14496-12, 8.7.3). -1 when the boxes do not fill the range exactly, as in a file that was cut off.
+long count_pictures(std::ifstream& file, std::uint64_t begin, std::uint64_t end) {
+  constexpr auto name = [](const char* text) {
+    std::uint64_t value = 0;
+    for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(text[i]);
+    return value;
+  };
+  long count = 0;
+  while (begin < end) {
+    std::uint64_t size = number_at(file, begin, 4), header = 8;
+    const std::uint64_t type = number_at(file, begin + 4, 4);
+    if (size == 1) {
+      size = number_at(file, begin + 8, 8);
+      header = 16;
+    }
+    if (size < header || size > end - begin) return -1;
+    if (type == name("stsz")) count += static_cast<long>(number_at(file, begin + header + 8, 4));
+    for (const char* container : {"moov", "trak", "mdia", "minf", "stbl"}) {
+      if (type != name(container)) continue;
+      const long inside = count_pictures(file, begin + header, begin + size);
+      if (inside < 0) return -1;
+      count += inside;
+    }
+    begin += size;
+  }
+  return count;
+}
+
+// Throws when the file is not a whole video of `frames` pictures; ffmpeg ends with code 0 even when the disk
+// is full.
+void verify(const fs::path& file, std::size_t frames, const fs::path& output, const std::string& said,
+            const std::string& hint) {
   std::error_code error;
-  const auto size = fs::file_size(file, error);
-  if (error || size == 0) throw Error(ErrorKind::io, "ffmpeg wrote nothing for " + output.string());
-  const fs::path ffprobe = find_program("ffprobe");
-  if (ffprobe.empty()) {
-    log_debug("ffprobe is not on the PATH: the number of frames of the video is not checked");
-    return;
-  }
-  ChildProcess child(ffprobe, {"-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
-                               "stream=nb_read_packets", "-of", "csv=p=0", "file:" + file.string()});
-  const ChildProcess::Outcome outcome = child.finish();
-  const std::string counted = tail(outcome.output);
-  if (!outcome.success || counted != std::to_string(frames)) {
-    throw Error(ErrorKind::io, "the video made for " + output.string() + " is damaged: of " +
-                                   std::to_string(frames) + " frames ffprobe finds " + counted);
-  }
+  const std::uint64_t size = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  const long found = error || !stream ? 0 : count_pictures(stream, 0, size);
+  if (found == static_cast<long>(frames)) return;
+  throw Error(ErrorKind::io,
+              "ffmpeg did not write " + output.string() + " whole (" +
+                  (found < 0 ? "it is cut off"
+                             : std::to_string(found) + " of " + std::to_string(frames) + " frames") +
+                  "): " + said,
+              hint);
 }
 
 std::string kept(const fs::path& folder) { return "the frames are kept in " + folder.string(); }
@@ -153,13 +188,14 @@ void encode_video(std::span<const fs::path> frames, const fs::path& output, cons
     if (alive && progress != nullptr) progress->advance(1);
   }
   const ChildProcess::Outcome outcome = ffmpeg.finish();
+  const std::string retry = kept(folder) + "; run `vivify encode` to try again";
   if (!outcome.success || !alive) {
     throw Error(
         ErrorKind::io,
         "ffmpeg " + outcome.ending + " while writing " + output.string() + ": " + tail(outcome.output),
-        kept(folder) + "; run `vivify encode` to try again");
+        retry);
   }
-  verify(file.path(), frames.size(), output);
+  verify(file.path(), frames.size(), output, tail(outcome.output), retry);
   file.put_in_place();
 }
 
