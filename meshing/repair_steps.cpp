@@ -29,10 +29,10 @@ namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 
-constexpr double kWrapAlpha = 1.0 / 40;    // of the diagonal
-constexpr double kWrapOffset = 1.0 / 800;  // of the diagonal
-constexpr double kHollowVolume = 0.6;      // a wrap with less than this share of the filled volume is a shell
-constexpr double kNoVolume = 1e-9;         // of the cubed diagonal
+constexpr double kWrapAlpha = 0.02;     // of the diagonal
+constexpr double kWrapOffset = 0.0005;  // of the diagonal
+constexpr double kHollowVolume = 0.6;   // a wrap with less than this share of the filled volume is a shell
+constexpr double kNoVolume = 1e-9;      // of the cubed diagonal
 
 using Polygon = std::vector<std::size_t>;
 
@@ -127,16 +127,13 @@ class Repair {
     }
     std::map<Point, std::size_t> first;
     for (std::size_t v = 0; v < soup_.points.size(); ++v) first.try_emplace(soup_.points[v], v);
-    std::size_t flipped = 0;
     for (std::size_t f = 0; f < before.size(); ++f) {
       Polygon now;
       for (const std::size_t v : soup_.polygons[f]) now.push_back(first[soup_.points[v]]);
       const auto corner = std::find(now.begin(), now.end(), before[f][0]);
       std::rotate(now.begin(), corner, now.end());
-      if (now[1] != before[f][1]) ++flipped;
+      if (now[1] != before[f][1]) ++flipped_;
     }
-    flipped = std::min(flipped, before.size() - flipped);
-    if (flipped > 0) note("turned round " + counted(flipped, "triangle", "triangles"));
   }
 
   void make_surface() {
@@ -189,13 +186,24 @@ class Repair {
       for (const auto& [a, b] : pairs) faces.insert({a, b});
       return counted(faces.size(), "triangle intersects", "triangles intersect") + " one another";
     }
-    const double before = PMP::volume(surface_);
+    const double before = enclosed_volume();
     PMP::orient_to_bound_a_volume(surface_);
-    const double volume = PMP::volume(surface_);
+    const double volume = enclosed_volume();
     if (!(volume > kNoVolume * std::pow(diagonal_, 3))) return "the surface encloses no volume";
-    if (before < 0) note("turned the surface inside out: it was oriented inward");
+    note_orientation(before < 0);
     note_cavities(before);
     return {};
+  }
+
+  double enclosed_volume() const { return signed_volume(from_surface_mesh(surface_)); }
+
+  void note_orientation(bool reversed) {
+    if (reversed) flipped_ = soup_.polygons.size() - flipped_;
+    if (flipped_ == soup_.polygons.size()) {
+      note("turned the surface inside out: it was oriented inward");
+    } else if (flipped_ > 0) {
+      note("turned round " + counted(flipped_, "triangle", "triangles"));
+    }
   }
 
   void note_cavities(double volume_before) {
@@ -203,11 +211,12 @@ class Repair {
     const std::size_t parts = PMP::connected_components(surface_, part);
     if (parts < 2) return;
     std::vector<double> volumes(parts, 0);
+    const Point origin = surface_.point(*surface_.vertices().begin());
     for (const auto face : surface_.faces()) {
       const auto h = surface_.halfedge(face);
       const Point &a = surface_.point(surface_.source(h)), &b = surface_.point(surface_.target(h)),
                   &c = surface_.point(surface_.target(surface_.next(h)));
-      volumes[part[face]] += CGAL::to_double(CGAL::volume(Point(CGAL::ORIGIN), a, b, c));
+      volumes[part[face]] += CGAL::to_double(CGAL::volume(origin, a, b, c));
     }
     const auto cavities = static_cast<std::size_t>(
         std::count_if(volumes.begin(), volumes.end(), [](double v) { return v < 0; }));
@@ -216,7 +225,7 @@ class Repair {
     }
     if (cavities > 0) {
       note("the surface has " + counted(cavities, "hidden cavity", "hidden cavities") + " inside", false);
-      const double after = PMP::volume(surface_);
+      const double after = enclosed_volume();
       if (std::abs(after - std::abs(volume_before)) > 1e-6 * after) {
         note("an inner shell was oriented as a part of its own and now is the wall of a cavity");
       }
@@ -225,7 +234,7 @@ class Repair {
 
   Bytes wrap(const std::string& obstacle) {
     const bool closed = CGAL::is_closed(surface_);
-    const double filled_volume = closed ? std::abs(PMP::volume(surface_)) : 0;
+    const double filled_volume = closed ? std::abs(enclosed_volume()) : 0;
     TriangleMesh soup = from_surface_mesh(surface_);
     if (soup.F.rows() == 0) soup = input_;
     TriangleMesh mesh = wrap_surface(soup, kWrapAlpha * diagonal_, kWrapOffset * diagonal_);
@@ -264,6 +273,7 @@ class Repair {
   SurfaceMesh surface_;
   std::vector<std::string> notes_;
   std::size_t open_holes_ = 0;
+  std::size_t flipped_ = 0;  // triangles that orient() turned round
   bool changed_ = false;
 };
 
