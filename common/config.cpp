@@ -47,7 +47,21 @@ class Places {
            std::string_view(text_).substr(offset(mark)).starts_with(word);
   }
 
-  const std::string& file() const { return file_; }
+  // Whether a quoted text that begins here ends before the file does; yaml-cpp does not insist.
+  bool quote_ends(const YAML::Mark& mark) const {
+    const bool is_double = has_at(mark, "\"");
+    if (!is_double && !has_at(mark, "'")) return true;
+    for (std::size_t i = offset(mark) + 1; i < text_.size(); ++i) {
+      if (is_double && text_[i] == '\\') {
+        ++i;
+      } else if (text_[i] == (is_double ? '"' : '\'')) {
+        const bool is_pair = !is_double && i + 1 < text_.size() && text_[i + 1] == '\'';
+        if (!is_pair) return true;
+        ++i;
+      }
+    }
+    return false;
+  }
 
  private:
   std::size_t offset(const YAML::Mark& mark) const {
@@ -125,6 +139,7 @@ class TreeBuilder final : public YAML::EventHandler {
     check_tag(mark, tag);
     ConfigNode node;
     node.quoted = tag == "!";
+    if (node.quoted && !places_.quote_ends(mark)) problem(mark, "this quoted text never ends", "");
     if (!node.quoted &&
         (value.empty() || value == "~" || value == "null" || value == "Null" || value == "NULL")) {
       add(std::move(node), mark, anchor);

@@ -22,6 +22,12 @@ std::mutex& library() {
   return mutex;
 }
 
+// HDF5 takes two files in memory with one name for the same file.
+std::string new_name() {
+  static std::uint64_t count = 0;
+  return "in memory " + std::to_string(++count);
+}
+
 // A handle of HDF5 that closes itself.
 class Handle {
  public:
@@ -84,7 +90,7 @@ Hdf5Writer::Hdf5Writer() : file_(-1) {
   const std::scoped_lock lock(library());
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (access && H5Pset_fapl_core(access.get(), 1 << 16, false) >= 0) {
-    file_ = H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access.get());
+    file_ = H5Fcreate(new_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get());
   }
   if (file_ < 0) throw Error(ErrorKind::internal, "HDF5 could not make a file in memory");
 }
@@ -244,7 +250,7 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path), file_(-
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (!bytes.empty() && access && H5Pset_fapl_core(access.get(), 1 << 16, false) >= 0 &&
       H5Pset_file_image(access.get(), bytes.data(), bytes.size()) >= 0) {
-    file_ = H5Fopen("in memory", H5F_ACC_RDONLY, access.get());
+    file_ = H5Fopen(new_name().c_str(), H5F_ACC_RDONLY, access.get());
   }
   if (file_ < 0) {
     throw Error(ErrorKind::io, path.string() + " is not a whole HDF5 file", "remove it and run again");

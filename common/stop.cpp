@@ -17,6 +17,9 @@ void install_stop_handlers() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
   for (const int signal : {SIGTERM, SIGUSR1, SIGINT}) sigaction(signal, &action, nullptr);
+  // A file that grows beyond RLIMIT_FSIZE is then an error of write() that can be reported.
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, nullptr);
 }
 
 void check_stop() {
