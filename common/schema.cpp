@@ -9,69 +9,69 @@
 
 namespace vivify {
 
-Schema&& Schema::unit(std::string text) && {
+Schema Schema::unit(std::string text) && {
   unit_text = std::move(text);
   return std::move(*this);
 }
-Schema&& Schema::above(double bound) && {
+Schema Schema::above(double bound) && {
   lower = bound;
   lower_open = true;
   return std::move(*this);
 }
-Schema&& Schema::at_least(double bound) && {
+Schema Schema::at_least(double bound) && {
   lower = bound;
   lower_open = false;
   return std::move(*this);
 }
-Schema&& Schema::below(double bound) && {
+Schema Schema::below(double bound) && {
   upper = bound;
   upper_open = true;
   return std::move(*this);
 }
-Schema&& Schema::at_most(double bound) && {
+Schema Schema::at_most(double bound) && {
   upper = bound;
   upper_open = false;
   return std::move(*this);
 }
-Schema&& Schema::infinite() && {
+Schema Schema::infinite() && {
   may_be_infinite = true;
   return std::move(*this);
 }
-Schema&& Schema::initially(double v) && {
+Schema Schema::initially(double v) && {
   default_value = kind == Kind::integer ? Value::integer(static_cast<long>(v)) : Value::number(v);
   return std::move(*this);
 }
-Schema&& Schema::initially(int v) && {
+Schema Schema::initially(int v) && {
   default_value = kind == Kind::integer ? Value::integer(v) : Value::number(v);
   return std::move(*this);
 }
-Schema&& Schema::initially(bool v) && {
+Schema Schema::initially(bool v) && {
   default_value = Value::boolean(v);
   return std::move(*this);
 }
-Schema&& Schema::initially(const char* v) && {
+Schema Schema::initially(const char* v) && {
   default_value = Value::string(v);
   return std::move(*this);
 }
-Schema&& Schema::initially(std::vector<double> v) && {
+Schema Schema::initially(std::vector<double> v) && {
   std::vector<Value> numbers;
   for (const double number : v) numbers.push_back(Value::number(number));
   default_value = Value::list(std::move(numbers));
   return std::move(*this);
 }
-Schema&& Schema::required() && {
+Schema Schema::required() && {
   is_required = true;
   return std::move(*this);
 }
-Schema&& Schema::items_at_least(int count) && {
+Schema Schema::items_at_least(int count) && {
   min_items = count;
   return std::move(*this);
 }
-Schema&& Schema::field(std::string key, Schema schema) && {
+Schema Schema::field(std::string key, Schema schema) && {
   fields.emplace_back(std::move(key), std::move(schema));
   return std::move(*this);
 }
-Schema&& Schema::option(std::string name, Schema object) && {
+Schema Schema::option(std::string name, Schema object) && {
   options.emplace_back(std::move(name), std::move(object));
   return std::move(*this);
 }

@@ -1,5 +1,5 @@
-// The schema of the scene file: key, type, unit, default, bounds and text of every setting, held once. It serves
-// parsing, `check`, `schema --json`, `schema --markdown` and scene.resolved.yaml.
+// The schema of the scene file: key, type, unit, default, bounds and text of every setting, held once. It
+// serves parsing, `check`, `schema --json`, `schema --markdown` and scene.resolved.yaml.
 //
 //   Schema material = object("Elastic material.")
 //       .field("density", number("Mass per volume.").unit("kg/m³").above(0).initially(1000))
@@ -20,24 +20,36 @@ namespace vivify {
 
 class Schema {
  public:
-  enum class Kind { boolean, integer, number, string, choice, path, vector, list, object, variant, dictionary };
+  enum class Kind {
+    boolean,
+    integer,
+    number,
+    string,
+    choice,
+    path,
+    vector,
+    list,
+    object,
+    variant,
+    dictionary
+  };
 
-  // Refinements; each returns the schema itself so that they can be chained.
-  Schema&& unit(std::string unit) &&;
-  Schema&& above(double bound) &&;     // value > bound
-  Schema&& at_least(double bound) &&;  // value >= bound
-  Schema&& below(double bound) &&;     // value < bound
-  Schema&& at_most(double bound) &&;   // value <= bound
-  Schema&& infinite() &&;              // a number may be `inf`
-  Schema&& initially(double v) &&;     // default of a number or integer
-  Schema&& initially(int v) &&;
-  Schema&& initially(bool v) &&;
-  Schema&& initially(const char* v) &&;                     // default of a string, choice or path
-  Schema&& initially(std::vector<double> v) &&;             // default of a vector
-  Schema&& required() &&;                                   // must be given; without a default and not required: null
-  Schema&& items_at_least(int count) &&;                    // of a list
-  Schema&& field(std::string key, Schema schema) &&;        // of an object; order is kept
-  Schema&& option(std::string name, Schema object) &&;      // of a variant
+  // Refinements; each returns the refined schema, so that they can be chained.
+  [[nodiscard]] Schema unit(std::string unit) &&;
+  [[nodiscard]] Schema above(double bound) &&;     // value > bound
+  [[nodiscard]] Schema at_least(double bound) &&;  // value >= bound
+  [[nodiscard]] Schema below(double bound) &&;     // value < bound
+  [[nodiscard]] Schema at_most(double bound) &&;   // value <= bound
+  [[nodiscard]] Schema infinite() &&;              // a number may be `inf`
+  [[nodiscard]] Schema initially(double v) &&;     // default of a number or integer
+  [[nodiscard]] Schema initially(int v) &&;
+  [[nodiscard]] Schema initially(bool v) &&;
+  [[nodiscard]] Schema initially(const char* v) &&;          // default of a string, choice or path
+  [[nodiscard]] Schema initially(std::vector<double> v) &&;  // default of a vector
+  [[nodiscard]] Schema required() &&;  // must be given; without a default and not required: null
+  [[nodiscard]] Schema items_at_least(int count) &&;                // of a list
+  [[nodiscard]] Schema field(std::string key, Schema schema) &&;    // of an object; order is kept
+  [[nodiscard]] Schema option(std::string name, Schema object) &&;  // of a variant
 
   // Data, for the code that walks the schema.
   Kind kind = Kind::object;
@@ -51,9 +63,9 @@ class Schema {
   Value default_value;
   std::vector<std::string> choices;
   std::vector<std::pair<std::string, Schema>> fields;  // of an object
-  std::string tag;                                     // of a variant: the key that selects, for example "type"
-  std::vector<std::pair<std::string, Schema>> options; // of a variant
-  std::shared_ptr<Schema> item;                        // of a list or dictionary
+  std::string tag;  // of a variant: the key that selects, for example "type"
+  std::vector<std::pair<std::string, Schema>> options;  // of a variant
+  std::shared_ptr<Schema> item;                         // of a list or dictionary
 };
 
 // What a setting is. `doc` is one or two full sentences for the reference.
@@ -62,16 +74,17 @@ Schema integer(std::string doc);
 Schema number(std::string doc);
 Schema string(std::string doc);
 Schema choice(std::string doc, std::vector<std::string> choices);
-Schema path(std::string doc);                   // a file, relative to the scene file
-Schema vector(std::string doc, int size);       // `size` numbers
-Schema list(std::string doc, Schema item);      // any number of items; an item that is an object with a required
-                                                // `name` must have a name of its own
+Schema path(std::string doc);               // a file, relative to the scene file
+Schema vector(std::string doc, int size);   // `size` numbers
+Schema list(std::string doc, Schema item);  // any number of items; an item that is an object with a required
+                                            // `name` must have a name of its own
 Schema dictionary(std::string doc, Schema item);  // free keys, each with a value of the same kind
-Schema object(std::string doc);                 // an object none of whose fields is required may be left out
+Schema object(std::string doc);  // an object none of whose fields is required may be left out
 // One of several objects, selected by the key `tag`; `initially("name")` makes the tag optional.
 Schema variant(std::string doc, std::string tag);
 
-// Checks `node` against `schema` and fills in defaults. Adds one Error(usage) per problem to `errors`, such as
+// Checks `node` against `schema` and fills in defaults. Adds one Error(usage) per problem to `errors`, such
+// as
 //   configs/walk.yaml:14:21: error: bodies[0].material.density = -3 kg/m³ must be > 0
 // and unknown keys name the nearest known one. The result is whole when no error was added.
 // Paths are made absolute or left relative to `folder` of the file by resolve_path, not here.

@@ -14,13 +14,11 @@
 namespace vivify::sim {
 namespace {
 
-constexpr int kMaxContactPasses = 3;        // solves of one step while contact planes still move
-constexpr double kPlaneTolerance = 0.1;     // of the contact layer: how far a plane may be from the true surface
-constexpr double kRelaxedRest = 0.8;        // a body stuck on a collapsed rest shape relaxes it by this factor
+constexpr int kMaxContactPasses = 3;     // solves of one step while contact planes still move
+constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
+constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
 
-Eigen::VectorXd flatten(const Points& V) {
-  return Eigen::Map<const Eigen::VectorXd>(V.data(), V.size());
-}
+Eigen::VectorXd flatten(const Points& V) { return Eigen::Map<const Eigen::VectorXd>(V.data(), V.size()); }
 
 Points unflatten(const Eigen::VectorXd& x) { return Eigen::Map<const Points>(x.data(), x.size() / 3, 3); }
 
@@ -56,7 +54,8 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings)
     body.regularizer_coefficients.push_back(regularizer[f]->coefficients());
   }
   // ½ ρ |ṗ|² h² with ρ h² independent of h: 0.03 M g / L at h = 0.01 s.
-  body.rate_weight = input.regularizer["rate"].as_number() * body.weight / body.height * std::pow(0.01 / settings.h, 2);
+  body.rate_weight =
+      input.regularizer["rate"].as_number() * body.weight / body.height * std::pow(0.01 / settings.h, 2);
 
   body.contact_points = input.contact_points;
   const int standing = std::max(1, count_standing_points(body.contact_points, flatten(body.mesh.V)));
@@ -79,12 +78,15 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings)
 }
 
 Body::Body(const BodyInput& input, const WorldSettings& settings)
-    : settings_(settings), model_(make_body_model(input, settings)), workspace_(std::make_unique<StepWorkspace>(*model_.pattern)) {
+    : settings_(settings),
+      model_(make_body_model(input, settings)),
+      workspace_(std::make_unique<StepWorkspace>(*model_.pattern)) {
   x_ = flatten(model_.mesh.V);
   v_ = Eigen::VectorXd::Zero(x_.size());
   q_ = Eigen::VectorXd::Zero(model_.rest.free_parameters());
   contact_memory_.resize(static_cast<std::size_t>(model_.contact_points.size()));
-  const ControlledBody controlled{model_.mass, model_.rest.X0, model_.height, settings.gravity.norm(), settings.h};
+  const ControlledBody controlled{model_.mass, model_.rest.X0, model_.height, settings.gravity.norm(),
+                                  settings.h};
   controller_ = make_controller(controlled, input.controller);
 }
 
@@ -92,12 +94,14 @@ StepSolution Body::solve(const StepProblem& problem, int* fallback, std::string*
   const Eigen::VectorXd start = guess(settings_.h);
   *fallback = 0;
   *method = model_.solver.method;
-  StepSolution best = find_entry(step_methods(), *method, "step method").solve(problem, q_, start, *workspace_);
+  StepSolution best =
+      find_entry(step_methods(), *method, "step method").solve(problem, q_, start, *workspace_);
   if (best.exact && best.optimal) return best;
 
   *fallback = 1;
   const std::string other = *method == "sqp" ? "reduced" : "sqp";
-  StepSolution second = find_entry(step_methods(), other, "step method").solve(problem, q_, start, *workspace_);
+  StepSolution second =
+      find_entry(step_methods(), other, "step method").solve(problem, q_, start, *workspace_);
   if (second.exact && (!best.exact || second.objective < best.objective)) {
     *method = other;
     best = std::move(second);
@@ -126,7 +130,8 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   const Goals goals = make_goals(controller_->goals({x_, v_, load}), x_, h);
 
   Eigen::VectorXd x_tilde = guess(h);
-  for (Eigen::Index i = 0; i < model_.mass.size(); ++i) x_tilde.segment<3>(3 * i) += h * h * settings_.gravity;
+  for (Eigen::Index i = 0; i < model_.mass.size(); ++i)
+    x_tilde.segment<3>(3 * i) += h * h * settings_.gravity;
 
   const double fastest = unflatten(v_).rowwise().norm().maxCoeff() + h * settings_.gravity.norm();
   const double reach = model_.contact.layer + 2 * h * fastest + 0.05 * model_.height;
@@ -137,14 +142,17 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   for (int pass = 0; pass < kMaxContactPasses; ++pass) {
     const StepProblem problem(model_, contacts, goals, x_tilde, q_, h);
     solution = solve(problem, &fallback, &method);
-    if (!solution.exact || contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer)) break;
-    contacts = ContactSet(model_.contact_points, model_.contact, colliders, solution.at.x, reach, contact_memory_);
+    if (!solution.exact ||
+        contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer))
+      break;
+    contacts =
+        ContactSet(model_.contact_points, model_.contact, colliders, solution.at.x, reach, contact_memory_);
   }
   if (!solution.exact) {
     throw Error(ErrorKind::numerical,
                 "body '" + model_.name + "', step " + std::to_string(step) +
-                    ": the equations of motion were not solved (residual " + std::to_string(solution.residual) +
-                    " of the weight)",
+                    ": the equations of motion were not solved (residual " +
+                    std::to_string(solution.residual) + " of the weight)",
                 "raise frames.steps_per_frame, or make the model stiffer");
   }
 
@@ -183,12 +191,14 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   record.internal_torque = torque.norm();
   record.elastic = problem.elastic_energy(solution.at, solution.rest);
   record.min_element_ratio = problem.smallest_element(solution.at);
-  record.contacts = static_cast<int>(std::count_if(contact_memory_.begin(), contact_memory_.end(),
-                                                   [](const ContactMemory& memory) { return memory.touching; }));
+  record.contacts =
+      static_cast<int>(std::count_if(contact_memory_.begin(), contact_memory_.end(),
+                                     [](const ContactMemory& memory) { return memory.touching; }));
   record.min_clearance = INFINITY;
   for (int i = 0; i < model_.contact_points.size(); ++i) {
     const Eigen::Vector3d y = model_.contact_points.position(i, x_);
-    for (const Collider& collider : colliders) record.min_clearance = std::min(record.min_clearance, collider.nearest(y).distance);
+    for (const Collider& collider : colliders)
+      record.min_clearance = std::min(record.min_clearance, collider.nearest(y).distance);
   }
   record.max_penetration = std::max(0.0, -record.min_clearance);
   const Eigen::Matrix3d R = best_rotation(model_.mass, model_.rest.X0, x_);
@@ -205,7 +215,8 @@ void Body::save(Hdf5Writer& file, const std::string& group) const {
   RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 5);
   for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
     const ContactMemory& memory = contact_memory_[i];
-    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.normal_force, memory.anchor.transpose();
+    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.normal_force,
+        memory.anchor.transpose();
   }
   file.put(group + "/restart/contact", contact);
   file.put(group + "/restart/controller", controller_->state());

@@ -1,4 +1,5 @@
-// One controlled (or passive) deformable body: its model, its state, its controller, and the step that moves it.
+// One controlled (or passive) deformable body: its model, its state, its controller, and the step that moves
+// it.
 #pragma once
 
 #include <memory>
@@ -36,8 +37,8 @@ class Body {
   Body(Body&&) = delete;
 
   const BodyModel& model() const { return model_; }
-  const Eigen::VectorXd& x() const { return x_; }        // 3 #V, m
-  const Eigen::VectorXd& v() const { return v_; }        // 3 #V, m/s
+  const Eigen::VectorXd& x() const { return x_; }  // 3 #V, m
+  const Eigen::VectorXd& v() const { return v_; }  // 3 #V, m/s
   Eigen::VectorXd p() const { return model_.rest.basis * q_; }
   const Controller& controller() const { return *controller_; }
   double wall_seconds() const { return wall_seconds_; }  // spent in step() by this process

@@ -1,4 +1,5 @@
-// All of a body that never changes during a run: rest mesh, mass, elasticity, rest space, contact points, patterns.
+// All of a body that never changes during a run: rest mesh, mass, elasticity, rest space, contact points,
+// patterns.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,18 +16,18 @@
 namespace vivify::sim {
 
 struct SolverSettings {
-  std::string method = "sqp";     // sqp | reduced
-  bool exact_hessian = false;     // the full blocks A, B, C of (13) instead of Gauss–Newton
+  std::string method = "sqp";  // sqp | reduced
+  bool exact_hessian = false;  // the full blocks A, B, C of (13) instead of Gauss–Newton
   int max_iterations = 20;
-  double decrement = 1e-5;        // stop at this Newton decrement, in units of weight · height
+  double decrement = 1e-5;  // stop at this Newton decrement, in units of weight · height
 };
 
 struct BodyModel {
   std::string name;
-  TetMesh mesh;                   // at rest, as placed in the scene
-  Eigen::VectorXd mass;           // #V, kg
-  double height = 0;              // m
-  double weight = 0;              // N
+  TetMesh mesh;          // at rest, as placed in the scene
+  Eigen::VectorXd mass;  // #V, kg
+  double height = 0;     // m
+  double weight = 0;     // N
 
   ElasticModel elastic;
   RestSpace rest;

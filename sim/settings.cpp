@@ -5,9 +5,12 @@
 namespace vivify::sim {
 
 Schema regularizer_schema() {
-  return object("Cost of changing the rest shape: the elastic energy between the initial and the current rest shape, (11).")
+  return object(
+             "Cost of changing the rest shape: the elastic energy between the initial and the current rest "
+             "shape, (11).")
       .field("stiffness", number("Edge stiffness, as a share of the model's.").above(0).initially(0.03))
-      .field("volume_stiffness", number("Volume stiffness, as a share of the model's.").at_least(0).initially(0.03))
+      .field("volume_stiffness",
+             number("Volume stiffness, as a share of the model's.").at_least(0).initially(0.03))
       .field("rate", number("Cost of changing the rest shape quickly; strong values make characters fall.")
                          .at_least(0)
                          .initially(0.03));
@@ -16,10 +19,11 @@ Schema regularizer_schema() {
 Schema contact_schema() {
   return object("Contact with colliders.")
       .field("points", integer("Points of the drawn surface that can touch.").at_least(4).initially(160))
-      .field("layer", number("Thickness of the contact layer as a share of the body's height: softer when larger.")
-                          .above(0)
-                          .at_most(0.1)
-                          .initially(0.003));
+      .field("layer",
+             number("Thickness of the contact layer as a share of the body's height: softer when larger.")
+                 .above(0)
+                 .at_most(0.1)
+                 .initially(0.003));
 }
 
 Schema solver_schema() {
@@ -27,12 +31,17 @@ Schema solver_schema() {
   for (const StepMethodEntry& entry : step_methods()) methods.emplace_back(entry.name);
   const SolverSettings standard;
   return object("How each step is solved.")
-      .field("method", choice("Lagrangian optimisation (sqp), or a forward simulation for every trial (reduced).", methods)
-                           .initially(standard.method.c_str()))
-      .field("exact_hessian",
-             boolean("Use the full blocks A, B, C of (13) instead of Gauss–Newton: dearer, seldom fewer iterations.")
-                 .initially(standard.exact_hessian))
-      .field("max_iterations", integer("Most iterations in one step.").at_least(1).initially(standard.max_iterations))
+      .field(
+          "method",
+          choice("Lagrangian optimisation (sqp), or a forward simulation for every trial (reduced).", methods)
+              .initially(standard.method.c_str()))
+      .field(
+          "exact_hessian",
+          boolean(
+              "Use the full blocks A, B, C of (13) instead of Gauss–Newton: dearer, seldom fewer iterations.")
+              .initially(standard.exact_hessian))
+      .field("max_iterations",
+             integer("Most iterations in one step.").at_least(1).initially(standard.max_iterations))
       .field("decrement", number("Stop at this Newton decrement, in units of weight times height.")
                               .above(0)
                               .initially(standard.decrement));

@@ -1,4 +1,5 @@
-// Schemas of the settings that sim/ reads besides `model` (sim/elastic/models.h) and `controller` (sim/control/controller.h).
+// Schemas of the settings that sim/ reads besides `model` (sim/elastic/models.h) and `controller`
+// (sim/control/controller.h).
 #pragma once
 
 #include "common/schema.h"

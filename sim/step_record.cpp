@@ -5,14 +5,17 @@
 namespace vivify::sim {
 
 std::string csv_header() {
-  return "step,t_s,body,method,sqp_iterations,linesearch_halvings,fallback,residual_rel,objective,p_norm,p_rate,"
-         "com_x_m,com_y_m,com_z_m,vel_x_m_s,vel_y_m_s,vel_z_m_s,internal_force_sum_n,internal_torque_sum_nm,contacts,"
+  return "step,t_s,body,method,sqp_iterations,linesearch_halvings,fallback,residual_rel,objective,p_norm,p_"
+         "rate,"
+         "com_x_m,com_y_m,com_z_m,vel_x_m_s,vel_y_m_s,vel_z_m_s,internal_force_sum_n,internal_torque_sum_nm,"
+         "contacts,"
          "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,phase\n";
 }
 
 std::string csv_line(const StepRecord& r) {
   std::string line = std::to_string(r.step) + ',' + number_text(r.t) + ',' + r.body + ',' + r.method + ',' +
-                     std::to_string(r.iterations) + ',' + std::to_string(r.halvings) + ',' + std::to_string(r.fallback);
+                     std::to_string(r.iterations) + ',' + std::to_string(r.halvings) + ',' +
+                     std::to_string(r.fallback);
   const auto add = [&](double value) { line += ',' + number_text(value); };
   for (const double value : {r.residual_rel, r.objective, r.p_norm, r.p_rate}) add(value);
   for (const Eigen::Vector3d& vector : {r.com, r.vel}) {

@@ -11,26 +11,26 @@ struct StepRecord {
   long step = 0;
   double t = 0;  // s, at the end of the step
   std::string body;
-  std::string method;           // that made the step: sqp, reduced, or hold (rest shape kept)
-  int iterations = 0;           // of the optimiser
-  int halvings = 0;             // damped or shortened trial steps
-  int fallback = 0;             // 0: the chosen method succeeded; 1: the other method; 2: rest shape held
-  double residual_rel = 0;      // ‖c‖∞ over the weight
-  double objective = 0;         // J
-  double p_norm = 0;            // m
-  double p_rate = 0;            // ‖p − p_n‖ / h, m/s
+  std::string method;       // that made the step: sqp, reduced, or hold (rest shape kept)
+  int iterations = 0;       // of the optimiser
+  int halvings = 0;         // damped or shortened trial steps
+  int fallback = 0;         // 0: the chosen method succeeded; 1: the other method; 2: rest shape held
+  double residual_rel = 0;  // ‖c‖∞ over the weight
+  double objective = 0;     // J
+  double p_norm = 0;        // m
+  double p_rate = 0;        // ‖p − p_n‖ / h, m/s
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  // m
   Eigen::Vector3d vel = Eigen::Vector3d::Zero();  // m/s
-  double internal_force = 0;    // ‖Σ f_int‖, N
-  double internal_torque = 0;   // ‖Σ x × f_int‖, N m
-  int contacts = 0;             // points with a normal force
-  double max_penetration = 0;   // of the drawn surface's contact points below a collider, m
-  double min_clearance = 0;     // smallest signed distance to a collider, m; infinite without colliders
-  double min_element_ratio = 1; // smallest v/V̄
-  double kinetic = 0;           // J
-  double elastic = 0;           // J
-  double tilt_deg = 0;          // angle of the body's up vector to the vertical
-  std::string phase;            // of the controller
+  double internal_force = 0;                      // ‖Σ f_int‖, N
+  double internal_torque = 0;                     // ‖Σ x × f_int‖, N m
+  int contacts = 0;                               // points with a normal force
+  double max_penetration = 0;                     // of the drawn surface's contact points below a collider, m
+  double min_clearance = 0;      // smallest signed distance to a collider, m; infinite without colliders
+  double min_element_ratio = 1;  // smallest v/V̄
+  double kinetic = 0;            // J
+  double elastic = 0;            // J
+  double tilt_deg = 0;           // angle of the body's up vector to the vertical
+  std::string phase;             // of the controller
 };
 
 std::string csv_header();                        // one line, with the newline

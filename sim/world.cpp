@@ -2,7 +2,8 @@
 
 namespace vivify::sim {
 
-World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders, const WorldSettings& settings)
+World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders,
+             const WorldSettings& settings)
     : settings_(settings), colliders_(std::move(colliders)) {
   for (const BodyInput& input : bodies) bodies_.push_back(std::make_unique<Body>(input, settings_));
 }

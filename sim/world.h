@@ -19,7 +19,11 @@ class World {
   int body_count() const { return static_cast<int>(bodies_.size()); }
   const Body& body(int i) const { return *bodies_[static_cast<std::size_t>(i)]; }
 
-  // Writes a frame: /t, /bodies/NAME/{x,v,p,restart}, and the records since the frame before as CSV lines in /steps.
+  // Records of the steps since the last save().
+  const std::vector<StepRecord>& records() const { return records_; }
+
+  // Writes a frame: /t, /bodies/NAME/{x,v,p,restart}, and the records since the frame before as CSV lines in
+  // /steps.
   void save(Hdf5Writer& file);
   // Goes on from a saved frame.
   void restore(const Hdf5Reader& file);

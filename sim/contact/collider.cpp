@@ -16,15 +16,16 @@ namespace {
 
 using Box3 = Eigen::AlignedBox<double, 3>;
 
-// Which feature of a triangle a point is nearest to: 0 the face, 1–3 the corner, 4–6 the edge (corner k−4 to k−3).
+// Which feature of a triangle a point is nearest to: 0 the face, 1–3 the corner, 4–6 the edge (corner k−4 to
+// k−3).
 struct TrianglePoint {
   Eigen::Vector3d position;
   int feature;
 };
 
 // Nearest point of a triangle by the regions of its barycentric coordinates (Ericson 2005, 5.1.5).
-TrianglePoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                  const Eigen::Vector3d& c) {
+TrianglePoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                  const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a;
   const double d1 = ab.dot(p - a), d2 = ac.dot(p - a);
   if (d1 <= 0 && d2 <= 0) return {a, 1};
@@ -37,7 +38,8 @@ TrianglePoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + ac * (d2 / (d2 - d6)), 6};
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 5};
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 5};
   const double scale = 1 / (va + vb + vc);
   return {a + ab * (vb * scale) + ac * (vc * scale), 0};
 }
@@ -52,7 +54,9 @@ struct NearestQuery {
 
   double minimumOnVolume(const Box3& box) const { return box.squaredExteriorDistance(point); }
   double minimumOnObject(int face) {
-    const auto corner = [&](int k) -> Eigen::Vector3d { return surface.V.row(surface.F(face, k)).transpose(); };
+    const auto corner = [&](int k) -> Eigen::Vector3d {
+      return surface.V.row(surface.F(face, k)).transpose();
+    };
     const TrianglePoint candidate = nearest_on_triangle(point, corner(0), corner(1), corner(2));
     const double distance2 = (candidate.position - point).squaredNorm();
     if (distance2 < best_distance2 || (distance2 == best_distance2 && face < best_face)) {
@@ -68,13 +72,16 @@ struct NearestQuery {
 
 struct Collider::Tree {
   Eigen::KdBVH<double, 3, int> hierarchy;
-  std::vector<Eigen::Vector3d> face_normals;                   // unit
-  std::vector<Eigen::Vector3d> corner_normals;                 // angle weighted, unit
+  std::vector<Eigen::Vector3d> face_normals;                    // unit
+  std::vector<Eigen::Vector3d> corner_normals;                  // angle weighted, unit
   std::map<std::pair<int, int>, Eigen::Vector3d> edge_normals;  // sum of the two face normals
 };
 
 Collider::Collider(std::string name, TriangleMesh surface, double friction)
-    : name_(std::move(name)), surface_(std::move(surface)), friction_(friction), tree_(std::make_unique<Tree>()) {
+    : name_(std::move(name)),
+      surface_(std::move(surface)),
+      friction_(friction),
+      tree_(std::make_unique<Tree>()) {
   const Triangles& F = surface_.F;
   if (F.rows() == 0) throw Error(ErrorKind::geometry, "collider '" + name_ + "' has no triangles");
   std::vector<int> faces;
@@ -104,7 +111,8 @@ Collider::Collider(std::string name, TriangleMesh surface, double friction)
       if (!inserted) it->second += normal;
     }
   }
-  if (faces.empty()) throw Error(ErrorKind::geometry, "every triangle of collider '" + name_ + "' is degenerate");
+  if (faces.empty())
+    throw Error(ErrorKind::geometry, "every triangle of collider '" + name_ + "' is degenerate");
   tree_->hierarchy = Eigen::KdBVH<double, 3, int>(faces.begin(), faces.end(), boxes.begin(), boxes.end());
 }
 
@@ -129,7 +137,8 @@ SurfacePoint Collider::nearest(const Eigen::Vector3d& point) const {
   const double sign = offset.dot(pseudo_normal) < 0 ? -1 : 1;
   // On a face the offset is along the face normal, which is exact even at distance zero.
   Eigen::Vector3d normal = tree_->face_normals[f];
-  if (feature != 0) normal = length > 1e-12 ? Eigen::Vector3d(sign * offset / length) : pseudo_normal.normalized();
+  if (feature != 0)
+    normal = length > 1e-12 ? Eigen::Vector3d(sign * offset / length) : pseudo_normal.normalized();
   return {query.best.position, normal, sign * length};
 }
 

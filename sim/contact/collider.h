@@ -18,8 +18,9 @@ struct SurfacePoint {
 
 class Collider {
  public:
-  // `surface` is outward oriented; it need not be closed (a table top may be a single quad). `friction` is Coulomb's μ
-  // and may be infinite: the unlimited springs of the paper. Throws Error(geometry) for an empty or degenerate surface.
+  // `surface` is outward oriented; it need not be closed (a table top may be a single quad). `friction` is
+  // Coulomb's μ and may be infinite: the unlimited springs of the paper. Throws Error(geometry) for an empty
+  // or degenerate surface.
   Collider(std::string name, TriangleMesh surface, double friction);
   ~Collider();
   Collider(Collider&&) noexcept;

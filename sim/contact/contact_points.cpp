@@ -8,8 +8,10 @@ namespace {
 
 constexpr double kFootHeight = 0.01;  // share of the height
 
-// Appends up to `count` of the candidates to `chosen`, each farthest from all chosen before it; ties go to the lower index.
-void sample_farthest(const Points& surface, const std::vector<int>& candidates, int count, std::vector<int>& chosen) {
+// Appends up to `count` of the candidates to `chosen`, each farthest from all chosen before it; ties go to
+// the lower index.
+void sample_farthest(const Points& surface, const std::vector<int>& candidates, int count,
+                     std::vector<int>& chosen) {
   std::vector<double> distance2(candidates.size(), INFINITY);
   const auto account_for = [&](int point) {
     for (std::size_t k = 0; k < candidates.size(); ++k) {

@@ -49,13 +49,14 @@ void ContactSet::scatter(const Contact& contact, const Block& block, const std::
   double* values = matrix.values();
   for (int column = 0; column < 12; ++column) {
     for (int row = column; row < 12; ++row) {
-      values[*slot++] += points_->weights(contact.point, row / 3) * points_->weights(contact.point, column / 3) *
-                         block(row % 3, column % 3);
+      values[*slot++] += points_->weights(contact.point, row / 3) *
+                         points_->weights(contact.point, column / 3) * block(row % 3, column % 3);
     }
   }
 }
 
-void ContactSet::add_hessian(const Eigen::VectorXd& x, const std::vector<int>& slots, SymmetricMatrix& matrix) const {
+void ContactSet::add_hessian(const Eigen::VectorXd& x, const std::vector<int>& slots,
+                             SymmetricMatrix& matrix) const {
   for (const Contact& contact : contacts_) {
     const Eigen::Vector3d y = points_->position(contact.point, x);
     const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
@@ -67,8 +68,8 @@ void ContactSet::add_hessian(const Eigen::VectorXd& x, const std::vector<int>& s
   }
 }
 
-void ContactSet::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l, const std::vector<int>& slots,
-                             SymmetricMatrix& matrix) const {
+void ContactSet::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
+                             const std::vector<int>& slots, SymmetricMatrix& matrix) const {
   for (const Contact& contact : contacts_) {
     const Eigen::Vector3d y = points_->position(contact.point, x), w = points_->position(contact.point, l);
     const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
@@ -91,7 +92,8 @@ Eigen::Vector3d ContactSet::total_force(const Eigen::VectorXd& x) const {
   return sum;
 }
 
-bool ContactSet::planes_hold(const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double tolerance) const {
+bool ContactSet::planes_hold(const std::vector<Collider>& colliders, const Eigen::VectorXd& x,
+                             double tolerance) const {
   for (const Contact& contact : contacts_) {
     const double assumed = distance(contact, x);
     if (assumed > normal_.layer + tolerance) continue;
@@ -106,7 +108,8 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
   for (const Contact& contact : contacts_) {
     const double force = normal_force(contact, x);
     ContactMemory& after = next[contact.point];
-    if (!(force > after.normal_force)) continue;  // with several colliders a point belongs to the one that presses most
+    if (!(force > after.normal_force))
+      continue;  // with several colliders a point belongs to the one that presses most
     const Eigen::Vector3d y = points_->position(contact.point, x);
     after.touching = true;
     after.normal_force = force;

@@ -1,5 +1,6 @@
-// Contacts of one body for one step: which points may touch which plane, where they are anchored, and the energy, force
-// and stiffness that follow (Coros et al. 2012, Section 3, with one-sided normal forces and a Coulomb limit).
+// Contacts of one body for one step: which points may touch which plane, where they are anchored, and the
+// energy, force and stiffness that follow (Coros et al. 2012, Section 3, with one-sided normal forces and a
+// Coulomb limit).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +15,8 @@
 
 namespace vivify::sim {
 
-// Points of a body that may touch: each a fixed combination of four vertices, so that the drawn surface itself touches.
+// Points of a body that may touch: each a fixed combination of four vertices, so that the drawn surface
+// itself touches.
 struct ContactPoints {
   Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> vertices;
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;
@@ -29,9 +31,9 @@ struct ContactPoints {
 
 // What a contact point remembers from step to step.
 struct ContactMemory {
-  bool touching = false;                                // the normal force was positive at the end of the last step
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();     // m
-  double normal_force = 0;                              // f_n at the end of the last step, N
+  bool touching = false;  // the normal force was positive at the end of the last step
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m
+  double normal_force = 0;                           // f_n at the end of the last step, N
 };
 
 struct ContactParameters {
@@ -53,10 +55,11 @@ class ContactSet {
  public:
   ContactSet() = default;
 
-  // Planes for every point that can reach a collider: those nearer than `reach` at `x`. Friction acts where the point
-  // touched at the end of the last step.
-  ContactSet(const ContactPoints& points, const ContactParameters& parameters, const std::vector<Collider>& colliders,
-             const Eigen::VectorXd& x, double reach, const std::vector<ContactMemory>& memory);
+  // Planes for every point that can reach a collider: those nearer than `reach` at `x`. Friction acts where
+  // the point touched at the end of the last step.
+  ContactSet(const ContactPoints& points, const ContactParameters& parameters,
+             const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
+             const std::vector<ContactMemory>& memory);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
@@ -77,11 +80,12 @@ class ContactSet {
   // Sum of the forces that the world exerts on the body, N.
   Eigen::Vector3d total_force(const Eigen::VectorXd& x) const;
 
-  // Whether the planes still describe the colliders at x: no point in reach of the layer is farther than `tolerance` from
-  // the distance that its plane gives.
+  // Whether the planes still describe the colliders at x: no point in reach of the layer is farther than
+  // `tolerance` from the distance that its plane gives.
   bool planes_hold(const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double tolerance) const;
 
-  // Memory after the step that ended at x: anchors set at first touch, dragged along by slip, dropped on release.
+  // Memory after the step that ended at x: anchors set at first touch, dragged along by slip, dropped on
+  // release.
   void update_memory(const Eigen::VectorXd& x, std::vector<ContactMemory>& memory) const;
 
  private:
@@ -89,7 +93,8 @@ class ContactSet {
     return v - contact.normal * contact.normal.dot(v);
   }
   template <class Block>
-  void scatter(const Contact& contact, const Block& block, const std::vector<int>& slots, SymmetricMatrix& matrix) const;
+  void scatter(const Contact& contact, const Block& block, const std::vector<int>& slots,
+               SymmetricMatrix& matrix) const;
 
   const ContactPoints* points_ = nullptr;
   NormalForce normal_ = {0, 0};

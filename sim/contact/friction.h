@@ -1,5 +1,6 @@
-// Anchored friction: a spring from the anchor where the point first touched, limited by Coulomb's μ f_n with the normal
-// force f_n of the step before. With slip u = |tangential offset| and y = u / 2u*, u* = μ f_n / k_t, the force is
+// Anchored friction: a spring from the anchor where the point first touched, limited by Coulomb's μ f_n with
+// the normal force f_n of the step before. With slip u = |tangential offset| and y = u / 2u*, u* = μ f_n /
+// k_t, the force is
 //   μ f_n (2y − y²) while y < 1 (sticks), μ f_n beyond (slips):
 // once differentiable at the switch. Infinite μ gives the paper's unlimited spring k_t u.
 #pragma once
@@ -21,7 +22,8 @@ class Friction {
   double energy(const Eigen::Vector3d& u) const;
   Eigen::Vector3d gradient(const Eigen::Vector3d& u) const;
   Eigen::Matrix3d hessian(const Eigen::Vector3d& u) const;
-  Eigen::Matrix3d third(const Eigen::Vector3d& u, const Eigen::Vector3d& w) const;  // d/dε Hessian(u + ε w) at 0
+  Eigen::Matrix3d third(const Eigen::Vector3d& u,
+                        const Eigen::Vector3d& w) const;  // d/dε Hessian(u + ε w) at 0
 
   // The offset after the step: an anchor is dragged along when the point slips (return map).
   Eigen::Vector3d return_map(const Eigen::Vector3d& u) const;

@@ -1,5 +1,6 @@
-// One-sided normal force of a contact: U(d) = (k/3) max(0, δ − d)³ of the distance d to the contact plane. The force
-// k (δ − d)² never pulls, and the Hessian is continuous at the onset (the paper's spring is quadratic and sticks).
+// One-sided normal force of a contact: U(d) = (k/3) max(0, δ − d)³ of the distance d to the contact plane.
+// The force k (δ − d)² never pulls, and the Hessian is continuous at the onset (the paper's spring is
+// quadratic and sticks).
 #pragma once
 
 #include <algorithm>

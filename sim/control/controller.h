@@ -1,4 +1,5 @@
-// A controller turns what the animator asks for into goals for one step (Coros et al. 2012, Sections 3 and 7).
+// A controller turns what the animator asks for into goals for one step (Coros et al. 2012, Sections 3 and
+// 7).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,9 +25,9 @@ struct ControlledBody {
 
 // What a controller sees at the start of a step.
 struct Observation {
-  const Eigen::VectorXd& x;          // 3 #V, m
-  const Eigen::VectorXd& v;          // 3 #V, m/s
-  double load;                       // sum of the normal forces of the last step, N
+  const Eigen::VectorXd& x;  // 3 #V, m
+  const Eigen::VectorXd& v;  // 3 #V, m/s
+  double load;               // sum of the normal forces of the last step, N
 };
 
 class Controller {

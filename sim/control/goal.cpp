@@ -14,7 +14,8 @@ Goals make_goals(const std::vector<Goal>& goals, const Eigen::VectorXd& x_n, dou
   for (const Goal& goal : goals) {
     const double weight = (h * goal.kp + goal.kd) / h;  // (10)
     if (weight == 0) continue;
-    const double target = (goal.kp * goal.sx + goal.kd * goal.sv + goal.kd / h * goal.a.dot(x_n)) / weight;  // (9)
+    const double target =
+        (goal.kp * goal.sx + goal.kd * goal.sv + goal.kd / h * goal.a.dot(x_n)) / weight;  // (9)
     result.G.row(row) = weight * goal.a.transpose();
     result.s[row] = weight * target;
     ++row;
@@ -30,7 +31,8 @@ Eigen::VectorXd centre_of_mass_weights(const Eigen::VectorXd& mass, const Eigen:
   return a;
 }
 
-Eigen::VectorXd spin_weights(const Eigen::VectorXd& mass, const Eigen::VectorXd& x_n, const Eigen::Vector3d& axis) {
+Eigen::VectorXd spin_weights(const Eigen::VectorXd& mass, const Eigen::VectorXd& x_n,
+                             const Eigen::Vector3d& axis) {
   const Eigen::Vector3d centre = centre_of_mass(mass, x_n);
   const Eigen::Vector3d row = inertia_tensor(mass, x_n).ldlt().solve(axis);
   Eigen::VectorXd a(x_n.size());

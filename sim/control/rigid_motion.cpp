@@ -21,7 +21,8 @@ Eigen::Matrix3d inertia_tensor(const Eigen::VectorXd& mass, const Eigen::VectorX
   return inertia;
 }
 
-Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::VectorXd& x, const Eigen::VectorXd& v) {
+Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::VectorXd& x,
+                                 const Eigen::VectorXd& v) {
   const Eigen::Vector3d centre = centre_of_mass(mass, x);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
@@ -31,11 +32,13 @@ Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::Vecto
   return sum;
 }
 
-Eigen::Matrix3d best_rotation(const Eigen::VectorXd& mass, const Eigen::VectorXd& rest, const Eigen::VectorXd& x) {
+Eigen::Matrix3d best_rotation(const Eigen::VectorXd& mass, const Eigen::VectorXd& rest,
+                              const Eigen::VectorXd& x) {
   const Eigen::Vector3d rest_centre = centre_of_mass(mass, rest), centre = centre_of_mass(mass, x);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    covariance += mass[i] * (x.segment<3>(3 * i) - centre) * (rest.segment<3>(3 * i) - rest_centre).transpose();
+    covariance +=
+        mass[i] * (x.segment<3>(3 * i) - centre) * (rest.segment<3>(3 * i) - rest_centre).transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();

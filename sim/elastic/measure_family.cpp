@@ -20,7 +20,8 @@ void MeasureFamily::merge_equal_terms() {
   std::map<std::pair<std::vector<int>, std::vector<int>>, double> merged;
   for (int i = 0; i < size(); ++i) {
     const auto begin = [&](int side) { return stencils_[side].begin() + n * i; };
-    merged[{std::vector<int>(begin(0), begin(0) + n), std::vector<int>(begin(1), begin(1) + n)}] += coefficients_[i];
+    merged[{std::vector<int>(begin(0), begin(0) + n), std::vector<int>(begin(1), begin(1) + n)}] +=
+        coefficients_[i];
   }
   stencils_[0].clear();
   stencils_[1].clear();
@@ -49,7 +50,8 @@ Eigen::MatrixXd MeasureFamily::gather(Side side, const Eigen::MatrixXd& g, const
   const Eigen::MatrixXd Yt = Y.transpose();  // columns of Yt are contiguous
   for (int i = 0; i < size(); ++i, stencil += n) {
     for (int k = 0; k < n; ++k) {
-      for (int axis = 0; axis < 3; ++axis) transposed.col(i) += g(3 * k + axis, i) * Yt.col(3 * stencil[k] + axis);
+      for (int axis = 0; axis < 3; ++axis)
+        transposed.col(i) += g(3 * k + axis, i) * Yt.col(3 * stencil[k] + axis);
     }
   }
   return transposed.transpose();
@@ -124,8 +126,9 @@ class FamilyOf final : public MeasureFamily {
       const Gradient g = Measure::gradient(stencil);
       const Hessian H = Measure::hessian(stencil);
       const Gradient Hl = H * li;
-      const Hessian block = coefficients_[i] * (g.dot(li) * H + g * Hl.transpose() + Hl * g.transpose() +
-                                                (Measure::value(stencil) - S[i]) * Measure::third(stencil, li));
+      const Hessian block =
+          coefficients_[i] * (g.dot(li) * H + g * Hl.transpose() + Hl * g.transpose() +
+                              (Measure::value(stencil) - S[i]) * Measure::third(stencil, li));
       add_block(i, block, matrix);
     }
   }

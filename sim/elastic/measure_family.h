@@ -1,6 +1,6 @@
-// The one form of every elastic energy: W = Σ ½ c (s(x) − S(X))², with the same measure s taken on the deformed and on
-// the rest stencil. A family is all terms of a model that share one measure. Closed forms of the derivatives, with
-// g = ∇s(x), H = ∇²s(x), G = ∇S(X) and l the part of λ on the element:
+// The one form of every elastic energy: W = Σ ½ c (s(x) − S(X))², with the same measure s taken on the
+// deformed and on the rest stencil. A family is all terms of a model that share one measure. Closed forms of
+// the derivatives, with g = ∇s(x), H = ∇²s(x), G = ∇S(X) and l the part of λ on the element:
 //   ∂W/∂x = c (s − S) g                       (minus the internal force)
 //   D     = c (g gᵀ + (s − S) H)              ∂²W/∂x²
 //   E     = −c g Gᵀ                           ∂²W/∂x∂X
@@ -26,11 +26,14 @@ class MeasureFamily {
 
   virtual std::string name() const = 0;
   virtual int points_per_term() const = 0;
-  // Whether s is the signed size of an element (area, volume): its ratio to the reference tells collapse and inversion.
+  // Whether s is the signed size of an element (area, volume): its ratio to the reference tells collapse and
+  // inversion.
   virtual bool measures_size() const = 0;
   int size() const { return static_cast<int>(coefficients_.size()); }
-  const Eigen::VectorXd& coefficients() const { return coefficients_; }           // #terms
-  const std::vector<int>& stencils(Side side) const { return stencils_[side == Side::rest]; }  // #terms · points
+  const Eigen::VectorXd& coefficients() const { return coefficients_; }  // #terms
+  const std::vector<int>& stencils(Side side) const {
+    return stencils_[side == Side::rest];
+  }  // #terms · points
 
   // Adds a term. `deformed` and `rest` hold points_per_term() indices.
   void add(const std::vector<int>& deformed, const std::vector<int>& rest, double coefficient);
@@ -42,7 +45,8 @@ class MeasureFamily {
   virtual void values(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s) const = 0;
 
   // s, and ∇s as one column per term (3 points by #terms).
-  virtual void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s, Eigen::MatrixXd& g) const = 0;
+  virtual void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s,
+                         Eigen::MatrixXd& g) const = 0;
 
   // out += Σ w_i g_i, scattered to the points.
   void scatter(Side side, const Eigen::MatrixXd& g, const Eigen::VectorXd& w, Eigen::VectorXd& out) const;

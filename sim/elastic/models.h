@@ -14,8 +14,8 @@ namespace vivify::sim {
 
 using ElasticModel = std::vector<std::unique_ptr<MeasureFamily>>;
 
-// Where the rest stencil of an element lives in the stacked rest shape: shared vertices (compatible), or four points of
-// its own per element (incompatible, Section 5.1).
+// Where the rest stencil of an element lives in the stacked rest shape: shared vertices (compatible), or four
+// points of its own per element (incompatible, Section 5.1).
 enum class RestLayout { compatible, incompatible };
 
 struct ModelEntry {

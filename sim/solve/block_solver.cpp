@@ -4,8 +4,8 @@
 
 namespace vivify::sim {
 
-BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest, bool exact_hessian,
-                         StepWorkspace& workspace)
+BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest,
+                         bool exact_hessian, StepWorkspace& workspace)
     : problem_(problem), at_(at), rest_(rest), workspace_(workspace) {
   c_ = problem.residual(at, rest);
   problem.stiffness(at, rest, workspace.D);
@@ -34,7 +34,8 @@ BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, co
   problem.block_A(at, rest, lambda_, workspace.block);
   const Eigen::MatrixXd B = problem.block_B(at, rest, lambda_);
   const Eigen::MatrixXd BF = B * F;
-  K_ = problem.block_C(at, rest, lambda_) - BF - BF.transpose() + F.transpose() * (workspace.block * F) + Z * Z.transpose();
+  K_ = problem.block_C(at, rest, lambda_) - BF - BF.transpose() + F.transpose() * (workspace.block * F) +
+       Z * Z.transpose();
   rhs_ += F.transpose() * (workspace.block * d_) - B * d_;
 }
 
@@ -43,11 +44,13 @@ Eigen::VectorXd BlockSolver::solve_K(double mu, const Eigen::VectorXd& rhs) cons
   damped.diagonal() += mu * K_.diagonal().cwiseAbs();
   const Eigen::LLT<Eigen::MatrixXd> cholesky(damped);
   if (cholesky.info() == Eigen::Success) return cholesky.solve(rhs);
-  // Only the exact Hessian can be indefinite: reflect the negative curvature, which keeps the step a descent step.
+  // Only the exact Hessian can be indefinite: reflect the negative curvature, which keeps the step a descent
+  // step.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(damped);
   const double floor = 1e-10 * eigen.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
   const Eigen::VectorXd curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(floor);
-  return eigen.eigenvectors() * curvature.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() * rhs;
+  return eigen.eigenvectors() * curvature.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() *
+         rhs;
 }
 
 double BlockSolver::decrement() const { return 0.5 * reduced_gradient_.dot(solve_K(0, reduced_gradient_)); }

@@ -1,6 +1,6 @@
-// Block elimination (13)–(17) of Coros et al. 2012 at one iterate. D is factorised once; with Gauss–Newton blocks
-// (A = GᵀG, B = 0, C = Gauss–Newton of r) the reduced matrix is K = R + Z Zᵀ with Z = Eᵀ D⁻¹ Gᵀ, and F = D⁻¹E is never
-// formed. The multiplier is recomputed exactly, λ = −D⁻ᵀ Gᵀ(Gx − s), so that a = ∂L/∂x = 0.
+// Block elimination (13)–(17) of Coros et al. 2012 at one iterate. D is factorised once; with Gauss–Newton
+// blocks (A = GᵀG, B = 0, C = Gauss–Newton of r) the reduced matrix is K = R + Z Zᵀ with Z = Eᵀ D⁻¹ Gᵀ, and F
+// = D⁻¹E is never formed. The multiplier is recomputed exactly, λ = −D⁻ᵀ Gᵀ(Gx − s), so that a = ∂L/∂x = 0.
 #pragma once
 
 #include "sim/solve/forward_step.h"
@@ -9,8 +9,8 @@ namespace vivify::sim {
 
 class BlockSolver {
  public:
-  // Linearises at (at, rest); `rest` needs derivatives. definite() tells whether D is positive definite; nothing else may
-  // be asked when it is not.
+  // Linearises at (at, rest); `rest` needs derivatives. definite() tells whether D is positive definite;
+  // nothing else may be asked when it is not.
   BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest, bool exact_hessian,
               StepWorkspace& workspace);
 

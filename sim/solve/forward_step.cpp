@@ -9,8 +9,8 @@ constexpr double kArmijo = 1e-4;
 
 }  // namespace
 
-ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x, double tolerance,
-                           StepWorkspace& workspace) {
+ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x,
+                           double tolerance, StepWorkspace& workspace) {
   ForwardResult result;
   result.at = problem.deformed_point(x);
   Eigen::VectorXd c = problem.residual(result.at, rest);

@@ -1,5 +1,5 @@
-// Implicit Euler for a fixed rest shape: solves c(x, q) = 0 by minimising the incremental potential with Newton's method.
-// It is the passive simulator, and the start and finish of every controlled step.
+// Implicit Euler for a fixed rest shape: solves c(x, q) = 0 by minimising the incremental potential with
+// Newton's method. It is the passive simulator, and the start and finish of every controlled step.
 #pragma once
 
 #include "sim/solve/linear_solver.h"
@@ -23,10 +23,10 @@ struct StepWorkspace {
 };
 
 // From `x`, until ‖c‖∞ ≤ tolerance · weight.
-ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x, double tolerance,
-                           StepWorkspace& workspace);
+ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x,
+                           double tolerance, StepWorkspace& workspace);
 
-inline constexpr double kStartTolerance = 1e-4;   // a feasible start need not be exact
+inline constexpr double kStartTolerance = 1e-4;    // a feasible start need not be exact
 inline constexpr double kFinishTolerance = 1e-11;  // every step that is kept is exact physics
 
 }  // namespace vivify::sim

@@ -7,7 +7,8 @@
 
 namespace vivify::sim {
 
-// Eigen's simplicial LDLᵀ: the same bits for any number of threads and any BLAS (docs/decisions/0002-determinism.md).
+// Eigen's simplicial LDLᵀ: the same bits for any number of threads and any BLAS
+// (docs/decisions/0002-determinism.md).
 class LinearSolver {
  public:
   explicit LinearSolver(const SymmetricPattern& pattern) { ldlt_.analyzePattern(pattern.zeros()); }

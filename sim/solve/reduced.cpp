@@ -1,5 +1,5 @@
-// Reduced-space method: x is the exact forward step of q at every trial, so the objective is a function of q alone and
-// falls in every iteration. The most predictable method, and the fallback of the SQP.
+// Reduced-space method: x is the exact forward step of q at every trial, so the objective is a function of q
+// alone and falls in every iteration. The most predictable method, and the fallback of the SQP.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,8 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
     Eigen::VectorXd dq, dx, gradient;
     bool accepted = false;
     const double before = objective;
-    // The linearisation lives in the workspace, which trials overwrite: take all that they need from it first.
+    // The linearisation lives in the workspace, which trials overwrite: take all that they need from it
+    // first.
     std::vector<Eigen::VectorXd> steps_q, steps_x;
     {
       const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);

@@ -37,7 +37,8 @@ int SymmetricPattern::slot(int row, int column) const {
 void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<int>& slots) const {
   for (int column = 0; column < 3 * count; ++column) {
     for (int row = column; row < 3 * count; ++row) {
-      const int global_row = 3 * vertices[row / 3] + row % 3, global_column = 3 * vertices[column / 3] + column % 3;
+      const int global_row = 3 * vertices[row / 3] + row % 3,
+                global_column = 3 * vertices[column / 3] + column % 3;
       slots.push_back(slot(std::max(global_row, global_column), std::min(global_row, global_column)));
     }
   }

@@ -1,5 +1,5 @@
-// Symmetric sparse matrices with a pattern that is fixed per character: the pattern is analysed once, and assembly
-// writes straight into the array of values.
+// Symmetric sparse matrices with a pattern that is fixed per character: the pattern is analysed once, and
+// assembly writes straight into the array of values.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -20,7 +20,8 @@ class SymmetricPattern {
   void finish();
 
   int size() const { return 3 * vertex_count_; }
-  // Place of entry (row, column) of the lower triangle (row >= column) in the array of values; -1 if not in the pattern.
+  // Place of entry (row, column) of the lower triangle (row >= column) in the array of values; -1 if not in
+  // the pattern.
   int slot(int row, int column) const;
   // Places of the lower triangle of the block of `count` vertices, column by column of the 3·count block.
   void append_slots(const int* vertices, int count, std::vector<int>& slots) const;

@@ -1,6 +1,6 @@
-// Lagrangian optimisation, Section 6 of Coros et al. 2012, with what makes it converge when contacts switch: a feasible
-// start, an L1 merit function with γ above the multipliers, second-order correction, and Levenberg–Marquardt damping of K
-// before any shortening of the step (a refused step is turned, not cut).
+// Lagrangian optimisation, Section 6 of Coros et al. 2012, with what makes it converge when contacts switch:
+// a feasible start, an L1 merit function with γ above the multipliers, second-order correction, and
+// Levenberg–Marquardt damping of K before any shortening of the step (a refused step is turned, not cut).
 #include <algorithm>
 #include <cmath>
 
@@ -51,7 +51,8 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
     const double merit = objective + gamma * infeasibility;
 
     // Accepts (x + dx, q + dq) when no element collapses and the merit function falls enough.
-    const auto try_step = [&](const Eigen::VectorXd& dx, const Eigen::VectorXd& dq, double wanted, Eigen::VectorXd* c) {
+    const auto try_step = [&](const Eigen::VectorXd& dx, const Eigen::VectorXd& dq, double wanted,
+                              Eigen::VectorXd* c) {
       RestPoint rest = problem.rest_point(solution.rest.q + dq, false);
       DeformedPoint at = problem.deformed_point(solution.at.x + dx);
       if (rest.smallest_element < kSmallestRest || problem.smallest_element(at) < kSmallestDeformed) {

@@ -26,7 +26,8 @@ Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
 }
 
 void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace) {
-  const ForwardResult finish = forward_step(problem, solution.rest, solution.at.x, kFinishTolerance, workspace);
+  const ForwardResult finish =
+      forward_step(problem, solution.rest, solution.at.x, kFinishTolerance, workspace);
   solution.at = finish.at;
   solution.exact = finish.converged;
   solution.residual = finish.residual;

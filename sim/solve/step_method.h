@@ -9,16 +9,16 @@
 namespace vivify::sim {
 
 struct StepSolution {
-  DeformedPoint at;          // c(x, q) = 0 to kFinishTolerance when `exact`
+  DeformedPoint at;  // c(x, q) = 0 to kFinishTolerance when `exact`
   RestPoint rest;
-  bool exact = false;        // the equations of motion hold
-  bool optimal = false;      // the decrement is below its limit, or no further gain was possible
-  int iterations = 0;        // of the optimiser
-  int halvings = 0;          // trial steps that were damped or shortened
-  int guards = 0;            // trial steps refused because an element collapsed
+  bool exact = false;    // the equations of motion hold
+  bool optimal = false;  // the decrement is below its limit, or no further gain was possible
+  int iterations = 0;    // of the optimiser
+  int halvings = 0;      // trial steps that were damped or shortened
+  int guards = 0;        // trial steps refused because an element collapsed
   int forward_iterations = 0;
-  double residual = 0;       // ‖c‖∞ over the weight
-  double objective = 0;      // J
+  double residual = 0;   // ‖c‖∞ over the weight
+  double objective = 0;  // J
 };
 
 struct StepMethodEntry {
@@ -28,21 +28,25 @@ struct StepMethodEntry {
                         StepWorkspace& workspace);
 };
 
-// "sqp": Lagrangian optimisation of Section 6; "reduced": every trial of q is followed by an exact forward step.
+// "sqp": Lagrangian optimisation of Section 6; "reduced": every trial of q is followed by an exact forward
+// step.
 std::span<const StepMethodEntry> step_methods();
 
-StepSolution solve_sqp(const StepProblem&, const Eigen::VectorXd& q, const Eigen::VectorXd& x, StepWorkspace&);
-StepSolution solve_reduced(const StepProblem&, const Eigen::VectorXd& q, const Eigen::VectorXd& x, StepWorkspace&);
+StepSolution solve_sqp(const StepProblem&, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
+                       StepWorkspace&);
+StepSolution solve_reduced(const StepProblem&, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
+                           StepWorkspace&);
 
 // Parts that the methods share.
-inline constexpr double kSmallestDeformed = 0.05;  // trials that squeeze an element below this share of its size fail
+inline constexpr double kSmallestDeformed =
+    0.05;  // trials that squeeze an element below this share of its size fail
 inline constexpr double kSmallestRest = 0.2;
-inline constexpr double kLargestChange = 0.1;      // of a parameter in one iteration, in body heights
-inline constexpr int kMaxDampings = 8;             // raises of the Levenberg–Marquardt parameter before halving
+inline constexpr double kLargestChange = 0.1;  // of a parameter in one iteration, in body heights
+inline constexpr int kMaxDampings = 8;         // raises of the Levenberg–Marquardt parameter before halving
 inline constexpr int kMaxStepHalvings = 10;
-inline constexpr double kSmallGain = 1e-4;         // relative; two such gains in a row end the iteration
-double raise_damping(double mu);                   // after a refused trial
-double lower_damping(double mu);                   // after a first trial that was accepted
+inline constexpr double kSmallGain = 1e-4;  // relative; two such gains in a row end the iteration
+double raise_damping(double mu);            // after a refused trial
+double lower_damping(double mu);            // after a first trial that was accepted
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq);
 // Ends a solution with an exact forward step from its x.
 void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace);

@@ -4,11 +4,12 @@
 
 namespace vivify::sim {
 
-StepProblem::StepProblem(const BodyModel& body, const ContactSet& contacts, const Goals& goals, Eigen::VectorXd x_tilde,
-                         Eigen::VectorXd q_n, double h)
+StepProblem::StepProblem(const BodyModel& body, const ContactSet& contacts, const Goals& goals,
+                         Eigen::VectorXd x_tilde, Eigen::VectorXd q_n, double h)
     : body_(body), contacts_(contacts), goals_(goals), x_tilde_(std::move(x_tilde)), q_n_(std::move(q_n)) {
   inertia_.resize(x_tilde_.size());
-  for (Eigen::Index i = 0; i < body.mass.size(); ++i) inertia_.segment<3>(3 * i).setConstant(body.mass[i] / (h * h));
+  for (Eigen::Index i = 0; i < body.mass.size(); ++i)
+    inertia_.segment<3>(3 * i).setConstant(body.mass[i] / (h * h));
 }
 
 RestPoint StepProblem::rest_point(const Eigen::VectorXd& q, bool with_derivatives) const {
@@ -82,7 +83,8 @@ void StepProblem::stiffness(const DeformedPoint& at, const RestPoint& rest, Symm
   D.set_zero();
   for (std::size_t f = 0; f < body_.elastic.size(); ++f) {
     const MeasureFamily& family = *body_.elastic[f];
-    family.add_hessians(at.x, at.g[f], family.coefficients(), family.coefficients().cwiseProduct(at.s[f] - rest.S[f]), D);
+    family.add_hessians(at.x, at.g[f], family.coefficients(),
+                        family.coefficients().cwiseProduct(at.s[f] - rest.S[f]), D);
   }
   contacts_.add_hessian(at.x, body_.contact_slots, D);
   add_inertia(1, D);
@@ -114,7 +116,8 @@ Eigen::MatrixXd StepProblem::multiply_E(const DeformedPoint& at, const RestPoint
     const Eigen::MatrixXd dS = rest.J[f] * dq;
     for (Eigen::Index k = 0; k < dq.cols(); ++k) {
       Eigen::VectorXd column = result.col(k);
-      body_.elastic[f]->scatter(Side::deformed, at.g[f], -body_.elastic[f]->coefficients().cwiseProduct(dS.col(k)), column);
+      body_.elastic[f]->scatter(Side::deformed, at.g[f],
+                                -body_.elastic[f]->coefficients().cwiseProduct(dS.col(k)), column);
       result.col(k) = column;
     }
   }
@@ -134,7 +137,8 @@ Eigen::MatrixXd StepProblem::multiply_Et(const DeformedPoint& at, const RestPoin
 Eigen::VectorXd StepProblem::regularizer_gradient(const RestPoint& rest) const {
   Eigen::VectorXd gradient = body_.rate_weight * (rest.q - q_n_);
   for (std::size_t f = 0; f < body_.elastic.size(); ++f) {
-    gradient += rest.J[f].transpose() * body_.regularizer_coefficients[f].cwiseProduct(rest.S[f] - body_.S0[f]);
+    gradient +=
+        rest.J[f].transpose() * body_.regularizer_coefficients[f].cwiseProduct(rest.S[f] - body_.S0[f]);
   }
   return gradient;
 }

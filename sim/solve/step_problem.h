@@ -1,5 +1,6 @@
 // The optimisation problem (5) of one time step, as functions and their derivatives and nothing else:
-//   min over x, q of ½ |G x − s|² + r(q)   s.t.   c(x, q) = M (x − x̃)/h² + ∂W/∂x(X(q), x) + ∂U_contact/∂x = 0,
+//   min over x, q of ½ |G x − s|² + r(q)   s.t.   c(x, q) = M (x − x̃)/h² + ∂W/∂x(X(q), x) + ∂U_contact/∂x =
+//   0,
 // with x̃ = x_n + h v_n + h² g⃗ (implicit Euler, equation (3)) and p = basis · q.
 #pragma once
 
@@ -14,10 +15,10 @@ namespace vivify::sim {
 // The rest shape at one q: measures, and (on request) their derivatives with respect to q.
 struct RestPoint {
   Eigen::VectorXd q;
-  std::vector<Eigen::VectorXd> S;   // per family: #terms
-  std::vector<Eigen::MatrixXd> J;   // per family: ∂S/∂q, #terms by #q; empty unless asked for
-  double regularizer = 0;           // r(q), J
-  double smallest_element = 1;      // min V_e / V̄_e of the rest elements
+  std::vector<Eigen::VectorXd> S;  // per family: #terms
+  std::vector<Eigen::MatrixXd> J;  // per family: ∂S/∂q, #terms by #q; empty unless asked for
+  double regularizer = 0;          // r(q), J
+  double smallest_element = 1;     // min V_e / V̄_e of the rest elements
 };
 
 // The deformed shape at one x: measures and gradients per family.
@@ -64,9 +65,12 @@ class StepProblem {
   Eigen::MatrixXd regularizer_gauss_newton(const RestPoint& rest) const;
 
   // Exact blocks of (13) for the multiplier λ. A comes without the goals' part GᵀG, which is of low rank.
-  void block_A(const DeformedPoint& at, const RestPoint& rest, const Eigen::VectorXd& lambda, SymmetricMatrix& A) const;
-  Eigen::MatrixXd block_B(const DeformedPoint& at, const RestPoint& rest, const Eigen::VectorXd& lambda) const;  // #q by n
-  Eigen::MatrixXd block_C(const DeformedPoint& at, const RestPoint& rest, const Eigen::VectorXd& lambda) const;  // #q by #q
+  void block_A(const DeformedPoint& at, const RestPoint& rest, const Eigen::VectorXd& lambda,
+               SymmetricMatrix& A) const;
+  Eigen::MatrixXd block_B(const DeformedPoint& at, const RestPoint& rest,
+                          const Eigen::VectorXd& lambda) const;  // #q by n
+  Eigen::MatrixXd block_C(const DeformedPoint& at, const RestPoint& rest,
+                          const Eigen::VectorXd& lambda) const;  // #q by #q
 
   // M/h² on the diagonal, added `scale` times: makes an indefinite D definite for a descent direction.
   void add_inertia(double scale, SymmetricMatrix& D) const;

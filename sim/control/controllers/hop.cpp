@@ -77,7 +77,8 @@ class HopController final : public Controller {
         add_upright(goals, now.x, 1);
         break;
       }
-      case kFlight: break;
+      case kFlight:
+        break;
       case kLand: {
         const double soft = std::sqrt(kLandingWeight) * kd;
         add_centre(goals, Eigen::Vector3d::UnitY(), soft, kHeightFrequency, ground_height_, 0);
@@ -137,8 +138,8 @@ class HopController final : public Controller {
     }
   }
 
-  void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency, double sx,
-                  double sv) const {
+  void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency,
+                  double sx, double sv) const {
     goals.push_back({centre_of_mass_weights(body_.mass, direction), frequency * kd, kd, sx, sv});
   }
 
@@ -181,14 +182,25 @@ class HopController final : public Controller {
 Schema hop_controller_schema() {
   return object("Hops along a heading: crouch, thrust, flight, land.")
       .field("heading_deg", number("Direction of travel: 0 is +z, 90 is +x.").unit("°").initially(0))
-      .field("height", number("Rise of the centre of mass after take-off.").unit("m").above(0).initially(0.25))
+      .field("height",
+             number("Rise of the centre of mass after take-off.").unit("m").above(0).initially(0.25))
       .field("pace", number("Average forward speed.").unit("m/s").at_least(0).initially(0.6))
-      .field("face_heading", boolean("Turn the front of the character (+z at rest) towards the heading.").initially(false))
-      .field("crouch_depth", number("Depth of the crouch as a share of the body's height.").at_least(0).at_most(0.5).initially(0.12))
+      .field("face_heading",
+             boolean("Turn the front of the character (+z at rest) towards the heading.").initially(false))
+      .field("crouch_depth", number("Depth of the crouch as a share of the body's height.")
+                                 .at_least(0)
+                                 .at_most(0.5)
+                                 .initially(0.12))
       .field("crouch_s", number("Duration of the crouch.").unit("s").above(0).initially(0.25))
-      .field("thrust_s", number("Time to push off; the thrust ends when the body leaves the ground.").unit("s").above(0).initially(0.15))
+      .field("thrust_s", number("Time to push off; the thrust ends when the body leaves the ground.")
+                             .unit("s")
+                             .above(0)
+                             .initially(0.15))
       .field("land_s", number("Time to recover after touch-down.").unit("s").above(0).initially(0.25))
-      .field("effort", number("Weight of the centre-of-mass goals against the cost of changing the rest shape.").above(0).initially(1));
+      .field("effort",
+             number("Weight of the centre-of-mass goals against the cost of changing the rest shape.")
+                 .above(0)
+                 .initially(1));
 }
 
 std::unique_ptr<Controller> make_hop_controller(const ControlledBody& body, const Value& settings) {

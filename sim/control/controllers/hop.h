@@ -1,5 +1,5 @@
-// Hopping: crouch, thrust, flight, land, over and over, along a heading. In flight nothing is asked of the centre of
-// mass, which no internal force can move.
+// Hopping: crouch, thrust, flight, land, over and over, along a heading. In flight nothing is asked of the
+// centre of mass, which no internal force can move.
 #pragma once
 
 #include "sim/control/controller.h"

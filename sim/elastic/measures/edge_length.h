@@ -1,5 +1,5 @@
-// Squared edge length, s = |x₁ − x₀|² (m²): the stretch measure of rods, shells and the simplified tetrahedron of
-// Coros et al. 2012, Appendix A.
+// Squared edge length, s = |x₁ − x₀|² (m²): the stretch measure of rods, shells and the simplified
+// tetrahedron of Coros et al. 2012, Appendix A.
 #pragma once
 
 #include <Eigen/Core>

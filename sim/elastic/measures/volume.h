@@ -44,7 +44,8 @@ struct Volume {
     return m;
   }
 
-  // Second derivatives with respect to the edge vectors, ∂²s/∂a∂b = −[c]×/6 and cyclic; point 0 takes minus the sums.
+  // Second derivatives with respect to the edge vectors, ∂²s/∂a∂b = −[c]×/6 and cyclic; point 0 takes minus
+  // the sums.
   static Hessian from_edges(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
     const Eigen::Matrix3d ab = -cross_matrix(c) / 6, bc = -cross_matrix(a) / 6, ca = -cross_matrix(b) / 6;
     Hessian H = Hessian::Zero();
