@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "render/film.h"
 #include "tests/render/test_images.h"
 
 namespace vivify::render {
@@ -111,6 +112,31 @@ TEST(ImageIo, RgbIsPickedOutOfManyChannels) {
       EXPECT_EQ(rgb.values[i + 1], test::value(picture, x, y, "G"));
       EXPECT_EQ(rgb.values[i + 2], test::value(picture, x, y, "B"));
     }
+  }
+}
+
+TEST(ImageIo, PicturesOfTheRendererAreRead) {
+  const test::Folder folder;
+  Film film(5, 4);
+  for (std::size_t i = 0; i < film.pixels(); ++i) {
+    film.rgba[4 * i + 1] = static_cast<float>(i) / 4;
+    film.normal[3 * i + 2] = 0.1f * static_cast<float>(i);
+    film.depth[i] = 1.1f * static_cast<float>(i);
+    film.id[i] = static_cast<float>(i % 3);
+  }
+  write_file_atomic(folder / "a.exr", encode_exr(film));
+  const Image image = read_image(folder / "a.exr");
+  const RgbImage rgb = read_rgb(folder / "a.exr");
+  EXPECT_EQ(image.width, 5);
+  EXPECT_EQ(image.height, 4);
+  for (std::size_t i = 0; i < film.pixels(); ++i) {
+    const int x = static_cast<int>(i) % 5, y = static_cast<int>(i) / 5;
+    const auto at = [&](const char* name) { return image.at(x, y, test::channel_index(image, name)); };
+    EXPECT_EQ(at("G"), film.rgba[4 * i + 1]);
+    EXPECT_EQ(at("normal.Z"), film.normal[3 * i + 2]);
+    EXPECT_EQ(at("depth.Z"), film.depth[i]);
+    EXPECT_EQ(at("id.ID"), film.id[i]);
+    EXPECT_EQ(rgb.values[3 * i + 1], film.rgba[4 * i + 1]);
   }
 }
 
