@@ -6,10 +6,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <mutex>
 #include <new>
 #include <unordered_map>
 
@@ -176,12 +179,43 @@ class MeshBuilder {
   std::size_t vertices_read_ = 0;
 };
 
+// What assimp says while it lives: some broken files are read with wrong or missing triangles and only a
+// message.
+class AssimpMessages final : public Assimp::LogStream {
+ public:
+  AssimpMessages() : lock_(mutex()) {
+    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Warn | Assimp::Logger::Err);
+  }
+  ~AssimpMessages() override {
+    Assimp::DefaultLogger::get()->detachStream(this);  // it would be deleted otherwise
+    Assimp::DefaultLogger::kill();
+  }
+
+  void write(const char* message) override { text_ += message; }
+  bool speak_of(const std::string& words) const { return text_.find(words) != std::string::npos; }
+
+ private:
+  // The logger of assimp is one for the whole process.
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+
+  std::scoped_lock<std::mutex> lock_;
+  std::string text_;
+};
+
 TriangleMesh read_checked(const std::filesystem::path& path) {
+  const AssimpMessages messages;
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     fail(path, "cannot be read as a mesh: " + std::string(importer.GetErrorString()),
          "export the asset again");
+  }
+  if (messages.speak_of("out of range") || messages.speak_of("out-of-range")) {
+    fail(path, "is broken: a face refers to a vertex that does not exist", "export the asset again");
   }
   std::vector<Instance> instances;
   collect_instances(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), instances);

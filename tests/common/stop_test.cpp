@@ -1,0 +1,41 @@
+#include "common/stop.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "common/error.h"
+
+namespace vivify {
+namespace {
+
+// The exit code that a process makes of the signal.
+int exit_code_after(int signal) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    install_stop_handlers();
+    try {
+      check_stop();
+      ::raise(signal);
+      check_stop();
+    } catch (const Error& error) {
+      ::_exit(exit_code(error.kind()));
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Stop, SignalsBecomeExitCodes) {
+  EXPECT_EQ(exit_code_after(SIGTERM), 75);
+  EXPECT_EQ(exit_code_after(SIGUSR1), 75);
+  EXPECT_EQ(exit_code_after(SIGINT), 130);
+  EXPECT_EQ(exit_code_after(SIGXFSZ), 0);
+}
+
+}  // namespace
+}  // namespace vivify
