@@ -24,24 +24,26 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
   solution.at = std::move(start.at);
 
   const double unit = body.weight * body.height;
+  const double feasible = 10 * kStartTolerance * body.weight;
+  const auto restore = [&] {
+    ForwardResult forward = forward_step(problem, solution.rest, solution.at.x, kStartTolerance, workspace);
+    solution.forward_iterations += forward.iterations;
+    solution.at = std::move(forward.at);
+    return forward.converged;
+  };
   double mu = 0, gamma = 0;
   int small_gains = 0;
-  bool restored = false;  // a forward step was made at this iterate already
   while (solution.iterations < body.solver.max_iterations) {
     const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
+    const bool is_feasible = block.residual().lpNorm<Eigen::Infinity>() <= feasible;
     if (!block.definite()) {
-      if (restored) break;
-      restored = true;
-      ForwardResult forward = forward_step(problem, solution.rest, solution.at.x, kStartTolerance, workspace);
-      solution.forward_iterations += forward.iterations;
-      solution.at = std::move(forward.at);
+      if (is_feasible || !restore()) break;
       continue;
     }
-    restored = false;
-    if (block.decrement() <= body.solver.decrement * unit &&
-        block.residual().lpNorm<Eigen::Infinity>() <= 10 * kStartTolerance * body.weight) {
-      solution.optimal = true;
-      break;
+    if (block.decrement() <= body.solver.decrement * unit) {
+      solution.optimal = is_feasible;
+      if (is_feasible || !restore()) break;
+      continue;  // only the equations of motion are left to be solved
     }
     ++solution.iterations;
 
@@ -50,9 +52,11 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
     const double infeasibility = block.residual().lpNorm<1>();
     const double merit = objective + gamma * infeasibility;
 
-    // Accepts (x + dx, q + dq) when no element collapses and the merit function falls enough.
+    // Accepts (x + dx, q + dq) when no element collapses and the merit function falls enough; c is the
+    // residual there, left empty when it was not evaluated.
     const auto try_step = [&](const Eigen::VectorXd& dx, const Eigen::VectorXd& dq, double wanted,
                               Eigen::VectorXd* c) {
+      c->resize(0);
       RestPoint rest = problem.rest_point(solution.rest.q + dq, false);
       DeformedPoint at = problem.deformed_point(solution.at.x + dx);
       if (rest.smallest_element < kSmallestRest || problem.smallest_element(at) < kSmallestDeformed) {
@@ -68,11 +72,11 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
 
     bool accepted = false;
     Eigen::VectorXd dq, dx, c;
-    for (int damping = 0; damping <= kMaxDampings && !accepted; ++damping) {
+    const int dampings = is_feasible ? kMaxDampings : 0;
+    for (int damping = 0; damping <= dampings && !accepted; ++damping) {
       dq = limit_change(problem, block.step_q(mu));
       dx = block.step_x(dq);
       const double wanted = kArmijo * std::min(0.0, block.slope(dx, dq) - gamma * infeasibility);
-      c.resize(0);
       accepted = try_step(dx, dq, wanted, &c);
       if (!accepted && c.size() > 0) accepted = try_step(dx + block.correction(c), dq, wanted, &c);
       if (accepted) {
@@ -81,6 +85,11 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
         ++solution.halvings;
         mu = raise_damping(mu);
       }
+    }
+    if (!accepted &&
+        !is_feasible) {  // Newton's method on c went astray: no step in q can help before that is mended
+      if (!restore()) break;
+      continue;
     }
     for (int halving = 0; halving < kMaxStepHalvings && !accepted; ++halving) {
       dq *= 0.5;
@@ -91,9 +100,8 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
     if (!accepted) break;
 
     solution.rest = problem.rest_point(solution.rest.q, true);
-    const double now = problem.objective(solution.at.x, solution.rest);
-    const bool small = std::abs(objective - now) < kSmallGain * std::abs(objective) &&
-                       c.lpNorm<Eigen::Infinity>() <= 10 * kStartTolerance * body.weight;
+    const double gain = objective - problem.objective(solution.at.x, solution.rest);
+    const bool small = std::abs(gain) < kSmallGain * objective && c.lpNorm<Eigen::Infinity>() <= feasible;
     small_gains = small ? small_gains + 1 : 0;
     if (small_gains == 2) {
       solution.optimal = true;
