@@ -26,7 +26,7 @@ int render_pixel(int x, int y, const Lens& lens, PathTracer& tracer, const Rende
   const std::size_t pixel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
   Sampler sampler(hash_words(frame_seed, static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y)),
-                  static_cast<std::uint32_t>(settings.spp));
+                  static_cast<std::uint32_t>(settings.spp) * static_cast<std::uint32_t>(settings.splits));
   Vec3 radiance, albedo, normal;
   float depth = 0;
   int hits = 0, lost = 0, object = 0;
@@ -39,7 +39,7 @@ int render_pixel(int x, int y, const Lens& lens, PathTracer& tracer, const Rende
     const float dy = sample_tent(u[1]);
     const Ray ray =
         lens.ray({static_cast<float>(x) + 0.5f + dx, static_cast<float>(y) + 0.5f + dy}, {u[2], u[3]});
-    const PathSample path = tracer.trace(ray, sampler);
+    const PathSample path = tracer.trace(ray, static_cast<std::uint32_t>(s), sampler);
     if (is_finite(path.radiance))
       radiance += path.radiance;
     else

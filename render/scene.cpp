@@ -45,6 +45,12 @@ Schema render_schema() {
                         .at_least(1)
                         .at_most(1 << 20)
                         .initially(preset.spp))
+      .field("splits",
+             integer("Paths that go on from the first rough surface of each sample. More make soft light and "
+                     "reflections smoother without more samples at the edges.")
+                 .at_least(1)
+                 .at_most(64)
+                 .initially(preset.splits))
       .field("max_depth", integer("Most surfaces that a path of light is scattered at.")
                               .at_least(1)
                               .at_most(1000)
@@ -69,6 +75,7 @@ RenderSettings make_settings(const Value& value) {
   settings.width = static_cast<int>(size[0]);
   settings.height = static_cast<int>(size[1]);
   settings.spp = static_cast<int>(value["spp"].as_integer());
+  settings.splits = static_cast<int>(value["splits"].as_integer());
   settings.max_depth = static_cast<int>(value["max_depth"].as_integer());
   settings.seed = static_cast<std::uint64_t>(value["seed"].as_integer());
   settings.clamp = value["clamp"].as_number();
@@ -77,7 +84,7 @@ RenderSettings make_settings(const Value& value) {
 
 const std::vector<QualityPreset>& quality_presets() {
   static const std::vector<QualityPreset> presets = {
-      {"draft", 320, 180, 4}, {"preview", 480, 270, 8}, {"final", 1280, 720, 64}};
+      {"draft", 320, 180, 4, 2}, {"preview", 480, 270, 8, 4}, {"final", 1280, 720, 64, 1}};
   return presets;
 }
 
@@ -86,7 +93,7 @@ std::vector<std::string> quality_overrides(const std::string& name) {
   for (const QualityPreset& preset : quality_presets()) {
     if (preset.name == name) {
       return {"render.size=[" + std::to_string(preset.width) + ", " + std::to_string(preset.height) + "]",
-              "render.spp=" + std::to_string(preset.spp)};
+              "render.spp=" + std::to_string(preset.spp), "render.splits=" + std::to_string(preset.splits)};
     }
     names.push_back(preset.name);
   }

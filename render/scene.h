@@ -71,7 +71,8 @@ struct RenderSettings {
   int width = 480;
   int height = 270;
   int spp = 8;        // samples per pixel; powers of two are best
-  int max_depth = 6;  // surfaces that a path meets at most
+  int splits = 4;     // paths that go on from the first rough surface of a sample
+  int max_depth = 6;  // surfaces that scatter a path at most
   std::uint64_t seed = 0;
   double clamp = 0;  // largest luminance of one indirect contribution; 0 is off and unbiased
   Strategy strategy = Strategy::mis;
@@ -86,11 +87,12 @@ struct QualityPreset {
   int width;
   int height;
   int spp;
+  int splits;
 };
 const std::vector<QualityPreset>& quality_presets();
 
-// The preset as assignments for apply_override: {"render.size=[1280, 720]", "render.spp=64"}.
-// Throws Error(usage) for an unknown name.
+// The preset as assignments for apply_override: {"render.size=[1280, 720]", "render.spp=64",
+// "render.splits=1"}. Throws Error(usage) for an unknown name.
 std::vector<std::string> quality_overrides(const std::string& name);
 
 }  // namespace vivify::render

@@ -52,10 +52,12 @@ class Porcelain : public Material {
   }
 
  private:
-  // Share of the samples that the coat gets, by what it reflects.
+  // Share of the samples that the coat gets: more than it reflects, because what it mirrors is far more
+  // uneven than what the body gathers, and the light of the body is found by sampling the lights as well.
   static float coat_share(const Vec3& color, float reflected) {
+    constexpr float kLeast = 0.4f;
     const float body = (1 - reflected) * luminance(color);
-    return reflected / (reflected + body + 1e-6f);
+    return std::max(kLeast, reflected / (reflected + body + 1e-6f));
   }
 
   Ggx ggx_;
