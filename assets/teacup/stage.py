@@ -58,9 +58,9 @@ def surroundings():
     way = np.stack(np.broadcast_arrays(np.sin(theta)[:, None] * np.sin(phi), np.cos(theta)[:, None],
                                        -np.sin(theta)[:, None] * np.cos(phi)), axis=-1)
     up = way[..., 1:2]
-    wall, ceiling, floor = (np.array(c) for c in ((0.30, 0.25, 0.20), (0.34, 0.37, 0.42), (0.10, 0.07, 0.05)))
+    wall, ceiling, floor = (np.array(c) for c in ((0.34, 0.27, 0.22), (0.42, 0.44, 0.48), (0.12, 0.08, 0.06)))
     room = np.where(up > 0, wall + (ceiling - wall) * np.maximum(up, 0)**0.8,
                     wall + (floor - wall) * np.minimum(1, -up / 0.45))
     middle = np.array(GLOW) / np.linalg.norm(GLOW)
     apart = np.sum((way - middle)**2, axis=-1, keepdims=True)
-    return room + np.array([0.80, 0.57, 0.38]) * np.exp(-apart / 0.45**2)
+    return room + np.array([1.00, 0.66, 0.43]) * np.exp(-apart / 0.45**2)
