@@ -1,0 +1,35 @@
+// Cages: coarse closed surfaces that carry a character (Coros et al. 2012, section 5, cage-based rest
+// shapes).
+#pragma once
+
+#include <string>
+
+#include "common/mesh.h"
+#include "common/schema.h"
+
+namespace vivify::meshing {
+
+struct CageSettings {
+  int vertices = 8;         // wanted number for an automatic cage
+  double clearance = 0.02;  // least distance to the enclosed points, over the diagonal of their bounding box
+  std::string file = "";    // a mesh file to take instead; empty: automatic
+};
+
+// The fields `vertices`, `clearance` and `file`.
+Schema cage_schema();
+CageSettings cage_settings(const Value& value);
+
+// A cage around the points (vertices of the simulation mesh) and the surface (closed, for example repaired),
+// or the one from settings.file. Automatic: eight vertices give an upright tapered box, which keeps the
+// symmetry of the character (measured: collapsed cages of eight vertices are skew and no smaller); other
+// numbers wrap the surface and collapse edges around it down to the wanted number, or as near to it as is
+// legal (logged). Throws Error(geometry) when no valid cage was found.
+TriangleMesh make_cage(const Points& must_enclose, const TriangleMesh& surface, const CageSettings& settings);
+
+// Checks a cage, and returns it facing outward: closed, manifold, free of self-intersections, all points
+// strictly inside with `clearance` (metres). Throws Error(geometry) that says what is wrong, where, and what
+// to do; `name` names the cage in it.
+TriangleMesh validate_cage(TriangleMesh cage, const Points& must_enclose, double clearance = 0,
+                           const std::string& name = "the cage");
+
+}  // namespace vivify::meshing
