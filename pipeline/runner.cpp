@@ -40,6 +40,20 @@ class FolderLock {
   int fd_ = -1;
 };
 
+// Removes what a killed run was writing (common/file.h); needs the lock.
+void remove_unfinished_files(const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> unfinished;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t mark = name.rfind(".tmp.");
+    if (mark != name.npos && name.find_first_not_of("0123456789", mark + 5) == name.npos) {
+      unfinished.push_back(entry.path());
+    }
+  }
+  std::error_code ignored;
+  for (const std::filesystem::path& path : unfinished) std::filesystem::remove(path, ignored);
+}
+
 StagePlan plan_stage(const Stage& stage, const Job& job, const RunOptions& options, Ledger& ledger) {
   StagePlan plan = {&stage, stage.products(job), {}};
   const bool forced = options.force == "all" || options.force == stage.name;
@@ -82,6 +96,7 @@ std::vector<StagePlan> plan(const Job& job, const RunOptions& options) {
 std::vector<StageReport> run(const Job& job, const RunOptions& options, Progress& progress) {
   make_folder(job.out);
   const FolderLock lock(job.out);
+  remove_unfinished_files(job.out);
   write_if_changed(job.out / "scene.resolved.yaml", job.scene.resolved);
 
   std::vector<StageReport> reports;

@@ -8,7 +8,12 @@
 #include "common/config.h"
 #include "common/file.h"
 #include "common/text.h"
+#include "meshing/cage.h"
+#include "meshing/tetrahedralize.h"
 #include "render/scene.h"
+#include "sim/control/controller.h"
+#include "sim/elastic/models.h"
+#include "sim/settings.h"
 
 namespace vivify::pipeline {
 namespace {
@@ -34,8 +39,30 @@ Schema placed(std::string doc) {
       .field("looks", looks_schema());
 }
 
+Schema rest_space_schema() {
+  return variant("How the rest shape may change.", "type")
+      .initially("cage")
+      .option("cage", meshing::cage_schema());
+}
+
 Schema body_schema() {
-  return placed("A soft character or object.");
+  return placed("A soft character or object.")
+      .field("tetrahedra", meshing::tetrahedra_schema())
+      .field("rest_space", rest_space_schema())
+      .field("model", sim::model_schema())
+      .field("regularizer", sim::regularizer_schema())
+      .field("contact", sim::contact_schema())
+      .field("controller", sim::controller_schema())
+      .field("solver", sim::solver_schema());
+}
+
+Schema video_schema() {
+  return object("The video made of the pictures.")
+      .field("crf", integer("Quality of H.264: 0 is lossless, 51 the worst.").at_least(0).at_most(51).initially(18))
+      .field("exposure_stops", number("The light is multiplied by 2 to this power before the view transform.")
+                                   .at_least(-20)
+                                   .at_most(20)
+                                   .initially(0.0));
 }
 
 Schema collider_schema() {
@@ -209,7 +236,8 @@ Schema scene_schema() {
       .field("props", list("Objects that are drawn only.", placed("A fixed object that is drawn only.")))
       .field("camera", following_camera_schema())
       .field("lights", list("Lights. Without any, a uniform white environment.", render::light_schema()))
-      .field("render", render::render_schema());
+      .field("render", render::render_schema())
+      .field("video", video_schema());
 }
 
 std::filesystem::path Scene::resolve_path(const std::string& path) const { return folder / path; }

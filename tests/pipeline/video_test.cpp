@@ -12,6 +12,7 @@
 
 #include "common/error.h"
 #include "common/file.h"
+#include "common/stop.h"
 #include "pipeline/child_process.h"
 #include "render/view_transform.h"
 #include "tests/render/test_images.h"
@@ -294,6 +295,24 @@ TEST_F(VideoTest, AShortWriteLeavesNothing) {
       expect_nothing_left();
     }
   }
+}
+
+TEST_F(VideoTest, ARequestedStopLeavesNothing) {
+  const std::vector<fs::path> frames = noisy_frames(20);
+  const auto stopped = [&] {
+    install_stop_handlers();
+    Observer observer([](long done) {
+      if (done == 3) ::raise(SIGTERM);
+    });
+    try {
+      encode_video(frames, output(), {}, &observer);
+    } catch (const Error& error) {
+      std::exit(observer.done == 3 ? exit_code(error.kind()) : 1);
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(stopped(), testing::ExitedWithCode(75), "");
+  expect_nothing_left();
 }
 
 TEST_F(VideoTest, AFailureKeepsTheVideoOfBefore) {

@@ -1,0 +1,244 @@
+// simulate: one file per frame with the state of every body, and the tables gathered from them.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+
+#include "common/error.h"
+#include "common/hdf5_file.h"
+#include "common/log.h"
+#include "common/stop.h"
+#include "pipeline/content_key.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/placement.h"
+#include "pipeline/run_report.h"
+#include "pipeline/stages/stages.h"
+#include "sim/contact/contact_points.h"
+#include "sim/step_record.h"
+#include "sim/world.h"
+
+namespace vivify::pipeline {
+namespace {
+
+constexpr const char* kStepsFile = "sim/steps.csv";
+constexpr const char* kSummaryFile = "sim/summary.json";
+
+std::vector<Product> products(const Job& job) {
+  const std::string key = simulation_key(job);
+  std::vector<Product> products;
+  for (int frame = 1; frame <= job.simulate_to; ++frame) products.push_back({simulation_file(frame), key});
+  const std::string tables = Hasher().add(key).add(std::to_string(job.simulate_to)).hex();
+  products.push_back({kStepsFile, tables});
+  products.push_back({kSummaryFile, tables});
+  return products;
+}
+
+sim::BodyInput load_body(const Job& job, const Value& body) {
+  const Hdf5Reader mesh(job.out / mesh_file(body));
+  sim::BodyInput input;
+  input.name = body["name"].as_string();
+  input.rest.V = mesh.matrix("/X0");
+  input.rest.T = mesh.int_matrix("/elements");
+  input.cage_weights = Hdf5Reader(job.out / weights_file(body)).matrix("/weights");
+  const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
+  Tetrahedra corners(tet.size(), 4);
+  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.T.row(tet[i]);
+  input.contact_points =
+      sim::select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"),
+                                 static_cast<int>(body["contact"]["points"].as_integer()));
+  input.model = body["model"];
+  input.regularizer = body["regularizer"];
+  input.contact = body["contact"];
+  input.controller = body["controller"];
+  input.solver = body["solver"];
+  return input;
+}
+
+sim::World make_world(const Job& job) {
+  const Scene& scene = job.scene;
+  std::vector<sim::BodyInput> bodies;
+  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body));
+  std::vector<sim::Collider> colliders;
+  for (const Value& collider : scene.settings["colliders"].items()) {
+    colliders.emplace_back(collider["name"].as_string(), read_placed_mesh(scene, collider),
+                           collider["friction"].as_number());
+  }
+  return sim::World(bodies, std::move(colliders), {scene.settings["gravity"].as_vector3(), scene.time_step()});
+}
+
+// Files of an earlier, different simulation would look like frames of this one.
+void remove_stale_frames(const Job& job, Ledger& ledger, const std::string& key) {
+  for (const std::string& file : ledger.files()) {
+    if (!file.starts_with("sim/frames/") || ledger.key(file) == key) continue;
+    std::error_code ignored;
+    std::filesystem::remove(job.out / file, ignored);
+    ledger.forget(file);
+  }
+}
+
+// Values of one column of steps.csv, per body.
+class StepTable {
+ public:
+  explicit StepTable(const std::string& csv) {
+    std::istringstream lines(csv);
+    std::string line;
+    std::getline(lines, line);
+    columns_ = split(line);
+    while (std::getline(lines, line)) rows_.push_back(split(line));
+  }
+  std::vector<double> column(const std::string& name, const std::string& body) const {
+    std::vector<double> values;
+    const std::size_t value = index(name), owner = index("body");
+    for (const std::vector<std::string>& row : rows_) {
+      if (row.at(owner) == body) values.push_back(std::stod(row.at(value)));
+    }
+    return values;
+  }
+
+ private:
+  static std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+  std::size_t index(const std::string& name) const {
+    return static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), name) - columns_.begin());
+  }
+  std::vector<std::string> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+double mean(const std::vector<double>& values) {
+  return values.empty() ? 0
+                        : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+// The smallest value that `share` of the values do not exceed.
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+std::string gather_steps(const Job& job) {
+  std::string csv = sim::csv_header();
+  for (int frame = 1; frame <= job.simulate_to; ++frame) {
+    csv += Hdf5Reader(job.out / simulation_file(frame)).text("/steps");
+  }
+  return csv;
+}
+
+std::string summarize(const Job& job, const std::string& csv) {
+  const StepTable steps(csv);
+  nlohmann::ordered_json summary;
+  summary["frames"] = job.simulate_to;
+  summary["h_s"] = job.scene.time_step();
+  summary["bodies"] = nlohmann::ordered_json::object();
+  for (const Value& body : job.scene.settings["bodies"].items()) {
+    const std::string& name = body["name"].as_string();
+    const RowMatrixXd weights = Hdf5Reader(job.out / weights_file(body)).matrix("/weights");
+    const std::vector<double> iterations = steps.column("sqp_iterations", name);
+    const std::vector<double> fallback = steps.column("fallback", name);
+    summary["bodies"][name] = {
+        {"model", body["model"]["type"].as_string()},
+        {"space", body["rest_space"]["type"].as_string()},
+        {"dofs", 3 * weights.rows()},
+        {"params", 3 * weights.cols()},
+        {"steps", iterations.size()},
+        {"sqp_iterations_mean", mean(iterations)},
+        {"sqp_iterations_p95", percentile(iterations, 0.95)},
+        {"fallback_steps", std::count_if(fallback.begin(), fallback.end(), [](double f) { return f != 0; })},
+        {"max_residual_rel", largest(steps.column("residual_rel", name))},
+        {"max_p_rate", largest(steps.column("p_rate", name))}};
+  }
+  return summary.dump(2) + "\n";
+}
+
+void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
+  const auto is_missing = [&](const std::string& file) {
+    return std::any_of(missing.begin(), missing.end(), [&](const Product& product) { return product.file == file; });
+  };
+  const std::string key = simulation_key(job);
+  remove_stale_frames(job, ledger, key);
+
+  std::unique_ptr<sim::World> world;
+  std::map<std::string, BodyTiming> timing;
+  const auto note_timing = [&](bool afresh) {
+    if (!world || world->body_count() == 0) return;
+    for (int i = 0; i < world->body_count(); ++i) {
+      timing[world->body(i).model().name].wall_seconds = world->body(i).wall_seconds();
+    }
+    update_body_timing(job.out, timing, afresh);
+  };
+  const bool afresh = is_missing(simulation_file(1));
+  try {
+    int reached = 0;  // frame that the world stands at
+    for (int frame = 1; frame <= job.simulate_to; ++frame) {
+      if (!is_missing(simulation_file(frame))) continue;
+      if (!world) world = std::make_unique<sim::World>(make_world(job));
+      if (frame > 1) {
+        if (reached != frame - 1) world->restore(Hdf5Reader(job.out / simulation_file(frame - 1)));
+        for (int step = 0; step < job.scene.steps_per_frame; ++step) {
+          check_stop();
+          world->step();
+        }
+        for (int i = 0; i < world->body_count(); ++i) {
+          timing[world->body(i).model().name].sim_seconds += job.scene.time_step() * job.scene.steps_per_frame;
+        }
+      }
+      Hdf5Writer file;
+      world->save(file);
+      ledger.commit(simulation_file(frame), key, file.image());
+      reached = frame;
+      progress.advance(1, "frame " + std::to_string(frame));
+    }
+  } catch (...) {
+    note_timing(afresh);
+    throw;
+  }
+  note_timing(afresh);
+
+  const std::string csv = gather_steps(job);
+  for (const Product& product : missing) {
+    if (product.file == kStepsFile) {
+      ledger.commit(product.file, product.key, std::as_bytes(std::span(csv)));
+      progress.advance(1);
+    } else if (product.file == kSummaryFile) {
+      const std::string summary = summarize(job, csv);
+      ledger.commit(product.file, product.key, std::as_bytes(std::span(summary)));
+      progress.advance(1);
+    }
+  }
+}
+
+}  // namespace
+
+std::string simulation_key(const Job& job) {
+  const Scene& scene = job.scene;
+  ContentKey key("sim");
+  key.add("fps", scene.fps).add("steps_per_frame", scene.steps_per_frame).add("gravity", scene.settings["gravity"]);
+  for (const Value& body : scene.settings["bodies"].items()) {
+    key.add("weights", weights_key(job, body));
+    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver"}) {
+      key.add(part, body[part]);
+    }
+  }
+  for (const Value& collider : scene.settings["colliders"].items()) {
+    for (const char* part : {"name", "position", "scale", "heading_deg", "friction"}) key.add(part, collider[part]);
+    key.add_file(scene.resolve_path(collider["mesh"].as_string()));
+  }
+  return key.hex();
+}
+
+std::string simulation_file(int frame) { return "sim/frames/" + frame_text(frame) + ".h5"; }
+
+Stage simulate_stage() { return {"simulate", "Everything up to the simulation", products, make}; }
+
+}  // namespace vivify::pipeline

@@ -1,0 +1,199 @@
+// What goes wrong outside the scene file: geometry, disks, folders, programs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/file.h"
+#include "tests/pipeline/program.h"
+#include "tests/pipeline/tiny_scene.h"
+
+namespace vivify::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing_support::ball_mesh;
+using testing_support::box_mesh;
+using testing_support::files_below;
+using testing_support::obj_text;
+using testing_support::Outcome;
+using testing_support::ProgramOptions;
+using testing_support::TinyScene;
+using testing_support::vivify;
+
+Outcome run(const TinyScene& scene, const std::string& command, const ProgramOptions& program = {},
+            std::vector<std::string> options = {}) {
+  std::vector<std::string> arguments = {command, scene.file().string(), "-o", scene.out().string(), "--progress=none"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  return vivify(arguments, program);
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh mesh;
+  mesh.V.resize(a.V.rows() + b.V.rows(), 3);
+  mesh.V << a.V, b.V;
+  mesh.F.resize(a.F.rows() + b.F.rows(), 3);
+  mesh.F << a.F, (b.F.array() + static_cast<int>(a.V.rows())).matrix();
+  return mesh;
+}
+
+TEST(WrongGeometry, EmptyMeshIsThree) {
+  const TinyScene scene;
+  scene.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("tiny.yaml:7:11: error: ball: "));
+  EXPECT_THAT(files_below(scene.out() / "mesh"), testing::IsEmpty());
+}
+
+TEST(WrongGeometry, VertexThatIsNoNumberIsThree) {
+  const TinyScene scene;
+  std::string text = obj_text(ball_mesh(0.5, 2));
+  const std::size_t second = text.find('\n') + 1;
+  text.replace(second, text.find('\n', second) - second, "v nan 0 0");
+  scene.write("ball.obj", text);
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("ball: "));
+}
+
+TEST(WrongGeometry, GarbageIsRefused) {
+  const TinyScene scene;
+  scene.write("ball.obj", std::string(1000, '\x01'));
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_TRUE(outcome.code == 3 || outcome.code == 5) << outcome.code << outcome.err;
+}
+
+TEST(WrongGeometry, OpenMeshIsRepairedWithANote) {
+  const TinyScene scene;
+  TriangleMesh open = ball_mesh(0.5, 2);
+  open.F.conservativeResize(open.F.rows() - 3, 3);
+  scene.write("ball.obj", obj_text(open));
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("hole"));
+}
+
+TEST(WrongGeometry, SelfIntersectingMeshIsRepairedWithANote) {
+  const TinyScene scene;
+  TriangleMesh bar = box_mesh({0.8, 0.2, 0.2});
+  scene.write("ball.obj", obj_text(joined(ball_mesh(0.5, 2), bar)));
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("ball: "));
+}
+
+TEST(WrongGeometry, CageThatDoesNotEncloseIsThree) {
+  TinyScene scene;
+  scene.write("cage.obj", obj_text(box_mesh({0.4, 0.4, 0.4})));
+  scene.change("vertices: 8", "file: cage.obj");
+  const Outcome outcome = run(scene, "weights");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("tiny.yaml:10:"));
+  EXPECT_THAT(outcome.err, HasSubstr("cage.obj"));
+  EXPECT_THAT(files_below(scene.out() / "weights"), testing::IsEmpty());
+}
+
+TEST(GoodGeometry, CageFromAFileIsPlacedLikeItsBody) {
+  TinyScene scene;
+  scene.write("cage.obj", obj_text(box_mesh({0.6, 0.6, 0.6})));
+  scene.change("vertices: 8", "file: cage.obj");
+  scene.change("position: [0, 0.5, 0]", "position: [3, 1, 0]\n    scale: 2\n    heading_deg: 30");
+  const Outcome outcome = run(scene, "weights");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST(WrongLooks, UnknownPartIsTwo) {
+  TinyScene scene;
+  scene.change("looks: {all: clay}", "looks: {handle: clay}");
+  const Outcome outcome = run(scene, "mesh");
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("handle"));
+}
+
+TEST(WrongFolder, OutputThatCannotBeMadeIsFive) {
+  const TinyScene scene;
+  scene.write("file", "in the way");
+  for (const std::string& out : {(scene.folder() / "file").string(), (scene.folder() / "file/out").string(),
+                                 std::string("/proc/vivify")}) {
+    const Outcome outcome = vivify({"run", scene.file().string(), "-o", out});
+    EXPECT_EQ(outcome.code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(out));
+  }
+  EXPECT_EQ(read_text_file(scene.folder() / "file"), "in the way");
+}
+
+TEST(WrongProgram, NoFfmpegKeepsThePictures) {
+  const TinyScene scene;
+  ProgramOptions program;
+  program.environment["PATH"] = scene.folder().string();
+  const Outcome outcome = run(scene, "run", program);
+  EXPECT_EQ(outcome.code, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("ffmpeg"));
+  EXPECT_FALSE(fs::exists(scene.out() / "tiny.mp4"));
+  EXPECT_EQ(files_below(scene.out() / "render").size(), 6u);
+  // With ffmpeg there again, only the video is made.
+  const Outcome again = run(scene, "run");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("render: cached"));
+}
+
+// A disk that is full in the middle of one file of each kind.
+class ShortWrite : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShortWrite, LeavesNoPartOfAFile) {
+  const TinyScene scene;
+  ASSERT_EQ(run(scene, "run").code, 0);
+  const fs::path victim = scene.out() / GetParam();
+  const std::string whole = read_text_file(victim);
+  fs::remove(victim);
+  ProgramOptions program;
+  program.largest_file = static_cast<long>(whole.size()) - 1;
+  const Outcome outcome = run(scene, "run", program);
+  EXPECT_EQ(outcome.code, 5) << outcome.err;
+  EXPECT_FALSE(fs::exists(victim));
+  for (const auto& [name, content] : files_below(scene.out())) {
+    EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
+    EXPECT_EQ(name.find(".part"), std::string::npos) << name;
+  }
+  const Outcome again = run(scene, "run");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(read_text_file(victim), whole);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ShortWrite,
+                         testing::Values("scene.resolved.yaml", "mesh/ball.h5", "weights/ball.h5", "sim/frames/0003.h5",
+                                         "sim/steps.csv", "sim/summary.json", "render/tiny.0002.exr", "tiny.mp4"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           return name;
+                         });
+
+TEST(ShortWriteOfSheet, LeavesNoPartOfAFile) {
+  const TinyScene scene;
+  ASSERT_EQ(run(scene, "render").code, 0);
+  ProgramOptions program;
+  program.largest_file = 500;
+  EXPECT_EQ(vivify({"sheet", scene.out().string()}, program).code, 5);
+  EXPECT_FALSE(fs::exists(scene.out() / "sheet.png"));
+}
+
+TEST(ShortWriteOfReports, EndsWithFive) {
+  for (const char* file : {"run.json", "timing.json", ".cache/mesh.json"}) {
+    const TinyScene scene;
+    ASSERT_EQ(run(scene, "mesh").code, 0);
+    const long size = static_cast<long>(fs::file_size(scene.out() / file));
+    fs::remove_all(scene.out());
+    // The limit has to spare the mesh itself: these files are written where it is there already.
+    ASSERT_EQ(run(scene, "mesh").code, 0);
+    fs::remove(scene.out() / file);
+    ProgramOptions program;
+    program.largest_file = size - 1;
+    const Outcome outcome = run(scene, "mesh", program, {"--force=mesh"});
+    EXPECT_EQ(outcome.code, 5) << file << outcome.err;
+    EXPECT_FALSE(fs::exists(scene.out() / file)) << file;
+  }
+}
+
+}  // namespace
+}  // namespace vivify::pipeline
