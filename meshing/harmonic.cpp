@@ -1,9 +1,13 @@
 #include "meshing/harmonic.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/error.h"
@@ -44,6 +48,57 @@ TetgenOutput mesh_cage(const TriangleMesh& cage, const Points& points, double di
   return run_tetgen(input, "pq1.414a" + number_text(bound));
 }
 
+Eigen::Vector3d barycentric(const Eigen::Vector3d& q, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                            const Eigen::Vector3d& c) {
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << b - a, c - a;
+  const Eigen::Vector2d w = edges.colPivHouseholderQr().solve(q - a);
+  return {1 - w.sum(), w[0], w[1]};
+}
+
+// A cage face with its corners, and the fourth corner of the flat quadrilateral that it is half of: the one
+// across the edge between corner[1] and corner[2].
+struct Patch {
+  std::array<int, 3> corner = {};
+  int fourth = -1;
+};
+
+// Pairs of faces that make a flat convex quadrilateral; faces that could pair with several others stay alone.
+std::vector<Patch> find_patches(const TriangleMesh& cage, bool pair_up) {
+  std::map<std::pair<int, int>, std::pair<int, int>>
+      left;  // directed edge -> face to its left, its third corner
+  for (int f = 0; f < cage.F.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) left[{cage.F(f, k), cage.F(f, (k + 1) % 3)}] = {f, cage.F(f, (k + 2) % 3)};
+  }
+  const auto at = [&](int v) { return Eigen::Vector3d(cage.V.row(v)); };
+  const auto is_flat_and_convex = [&](int i, int j, int d, int k) {
+    const Eigen::Vector3d normal = (at(j) - at(i)).cross(at(k) - at(i));
+    const double size = normal.norm();
+    const auto part = [&](int a, int b, int c) {
+      return (at(b) - at(a)).cross(at(c) - at(a)).dot(normal) / size;
+    };
+    return std::abs((at(d) - at(i)).dot(normal)) < 1e-12 * size * std::sqrt(size) && part(j, d, k) > 0 &&
+           part(i, j, d) > 1e-6 * size && part(i, d, k) > 1e-6 * size;
+  };
+  std::vector<Patch> patches;
+  std::vector<int> partners(static_cast<std::size_t>(cage.F.rows()), 0), partner(partners.size(), -1);
+  for (int f = 0; f < cage.F.rows(); ++f) {
+    patches.push_back({{cage.F(f, 0), cage.F(f, 1), cage.F(f, 2)}, -1});
+    for (int k = 0; k < 3 && pair_up; ++k) {
+      const int i = cage.F(f, k), j = cage.F(f, (k + 1) % 3), l = cage.F(f, (k + 2) % 3);
+      const auto [other, d] = left.at({l, j});
+      if (!is_flat_and_convex(i, j, d, l)) continue;
+      patches.back() = {{i, j, l}, d};
+      ++partners[static_cast<std::size_t>(f)];
+      partner[static_cast<std::size_t>(f)] = other;
+    }
+  }
+  for (std::size_t f = 0; f < patches.size(); ++f) {
+    if (partners[f] != 1 || partners[static_cast<std::size_t>(partner[f])] != 1) patches[f].fourth = -1;
+  }
+  return patches;
+}
+
 // Hat functions of the cage vertices at the nodes on the cage surface (#B by #C): barycentric coordinates in
 // the cage face that the node lies on.
 struct BoundaryHats {
@@ -51,28 +106,37 @@ struct BoundaryHats {
   Eigen::MatrixXd values;
 };
 
-BoundaryHats boundary_hats(const TriangleMesh& cage, const TetgenOutput& tets) {
+BoundaryHats boundary_hats(const TriangleMesh& cage, const TetgenOutput& tets, bool both_diagonals) {
   Eigen::VectorXi facet = Eigen::VectorXi::Constant(tets.mesh.V.rows(), -1);
   for (Eigen::Index b = 0; b < tets.boundary.rows(); ++b) {
     if (tets.boundary_facet[b] < 0) throw Error(ErrorKind::internal, "a boundary triangle has no cage face");
     for (int k = 0; k < 3; ++k) facet[tets.boundary(b, k)] = tets.boundary_facet[b];
   }
+  const std::vector<Patch> patches = find_patches(cage, both_diagonals);
   BoundaryHats hats;
   hats.nodes.resize((facet.array() >= 0).count());
   hats.values = Eigen::MatrixXd::Zero(hats.nodes.size(), cage.V.rows());
   Eigen::Index row = 0;
   for (int v = 0; v < facet.size(); ++v) {
     if (facet[v] < 0) continue;
-    const auto face = cage.F.row(facet[v]);
-    const Eigen::Vector3d origin = cage.V.row(face[0]);
-    Eigen::Matrix<double, 3, 2> edges;
-    edges << cage.V.row(face[1]).transpose() - origin, cage.V.row(face[2]).transpose() - origin;
-    const Eigen::Vector2d b = edges.colPivHouseholderQr().solve(tets.mesh.V.row(v).transpose() - origin);
-    hats.nodes[row] = v;
-    hats.values(row, face[0]) = 1 - b.sum();
-    hats.values(row, face[1]) = b[0];
-    hats.values(row, face[2]) = b[1];
-    ++row;
+    const Patch& patch = patches[static_cast<std::size_t>(facet[v])];
+    const Eigen::Vector3d q = tets.mesh.V.row(v);
+    const auto weights = [&](int a, int b, int c) {
+      return barycentric(q, cage.V.row(a), cage.V.row(b), cage.V.row(c));
+    };
+    const auto add = [&](double share, int a, int b, int c, const Eigen::Vector3d& w) {
+      hats.values(row, a) += share * w[0];
+      hats.values(row, b) += share * w[1];
+      hats.values(row, c) += share * w[2];
+    };
+    const auto [i, j, k] = patch.corner;
+    const int d = patch.fourth;
+    add(d < 0 ? 1 : 0.5, i, j, k, weights(i, j, k));
+    if (d >= 0) {
+      const Eigen::Vector3d one = weights(i, j, d), two = weights(i, d, k);
+      one.minCoeff() > two.minCoeff() ? add(0.5, i, j, d, one) : add(0.5, i, d, k, two);
+    }
+    hats.nodes[row++] = v;
   }
   // Barycentric coordinates on an edge of the cage are -1e-17 as often as +1e-17.
   hats.values = hats.values.unaryExpr([](double value) { return std::abs(value) < 1e-14 ? 0.0 : value; });
@@ -163,7 +227,7 @@ Eigen::MatrixXd harmonic_coordinates(const TriangleMesh& cage, const Points& poi
   check_points(cage, points, diagonal);
   const bool are_nodes = points.rows() <= settings.unknowns;
   const TetgenOutput tets = mesh_cage(cage, are_nodes ? points : Points(0, 3), diagonal, settings.unknowns);
-  const BoundaryHats hats = boundary_hats(cage, tets);
+  const BoundaryHats hats = boundary_hats(cage, tets, settings.both_diagonals);
   const LaplaceProblem laplace(tets.mesh, hats.nodes);
   Eigen::MatrixXd weights =
       at_points(laplace.solve(hats.values), tets.mesh, points, cage.V.rows(), are_nodes);

@@ -9,6 +9,10 @@ namespace vivify::meshing {
 
 struct HarmonicSettings {
   int unknowns = 15000;  // wanted size of the Laplace problem; the error falls as its power -2/3
+  // Two cage faces that make a flat convex quadrilateral take the mean of the boundary values for both of its
+  // diagonals: the weights keep the symmetry of a box, where one diagonal per side makes them up to three
+  // times as large at half of the corners.
+  bool both_diagonals = true;
 };
 
 struct HarmonicReport {

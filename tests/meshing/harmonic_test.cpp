@@ -144,7 +144,8 @@ TEST(Harmonic, LagrangeProperty) {
                              c = cage.V.row(cage.F(f, 2));
     points.row(n + f) = split[0] * a + split[1] * b + split[2] * c - near * (b - a).cross(c - a).normalized();
   }
-  const Eigen::MatrixXd weights = harmonic_coordinates(cage, points, {.unknowns = 2000});
+  const Eigen::MatrixXd weights =
+      harmonic_coordinates(cage, points, {.unknowns = 2000, .both_diagonals = false});
   Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(n + m, n);
   wanted.topRows(n).setIdentity();
   for (Eigen::Index f = 0; f < m; ++f) {
@@ -157,7 +158,7 @@ TEST(Harmonic, LagrangeProperty) {
 TEST(Harmonic, WalkOnSpheresAgreesInANonConvexCage) {
   const TriangleMesh cage = shapes::u_shape();
   const Points points = points_inside(cage, 10, 0.05, 9);
-  const Eigen::MatrixXd weights = harmonic_coordinates(cage, points);
+  const Eigen::MatrixXd weights = harmonic_coordinates(cage, points, {.both_diagonals = false});
   constexpr int kWalks = 20000;
   std::vector<Estimate> oracle(10);
   parallel_for(10, [&](std::size_t p) {
@@ -176,6 +177,31 @@ TEST(Harmonic, WalkOnSpheresAgreesInANonConvexCage) {
     }
   }
   RecordProperty("largest_deviation_in_standard_errors", std::to_string(worst));
+}
+
+// Mirror images have mirrored weights in a box although its triangles are not symmetric, and the centre has
+// equal ones.
+TEST(Harmonic, FlatQuadrilateralsKeepTheSymmetryOfABox) {
+  const TriangleMesh cage = shapes::box({-1, -1.5, -0.5}, {1, 1.5, 0.5});
+  Points points(3, 3);
+  points << 0, 0, 0, 0.5, 0.3, -0.2, -0.5, 0.3, -0.2;
+  const Eigen::MatrixXd weights = harmonic_coordinates(cage, points);
+  expect_valid_weights(weights, cage, points);
+  const Eigen::MatrixXd skew = harmonic_coordinates(cage, points, {.both_diagonals = false});
+  EXPECT_LE((weights.row(0).array() - 0.125).abs().maxCoeff(), 2e-3);
+  EXPECT_GE((skew.row(0).array() - 0.125).abs().maxCoeff(), 0.02);
+  for (int i = 0; i < 8; ++i) EXPECT_NEAR(weights(1, i), weights(2, i ^ 1), 2e-3);
+}
+
+// On a flat quadrilateral the weights are the mean over both diagonals.
+TEST(Harmonic, FlatQuadrilateralsTakeTheMeanOfBothDiagonals) {
+  const TriangleMesh cage = shapes::box({0, 0, 0}, {1, 1, 1});
+  Points points(1, 3);
+  points << 0.3, 0.2, 1e-5;  // corners 0, 1, 2, 3 of the side z = 0
+  const Eigen::MatrixXd weights = harmonic_coordinates(cage, points, {.unknowns = 2000});
+  Eigen::RowVectorXd wanted(8);
+  wanted << (0.7 + 0.5) / 2, (0.1 + 0.3) / 2, (0 + 0.2) / 2, (0.2 + 0) / 2, 0, 0, 0, 0;
+  EXPECT_LE((weights.row(0) - wanted).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 // The tips of the arms of the U are 1 apart across the gap and about 5 through the inside.
