@@ -54,6 +54,7 @@ void update_body_timing(const std::filesystem::path& out, const std::map<std::st
   if (afresh || !json["bodies"].is_object()) json["bodies"] = Json::object();
   for (const auto& [name, timing] : bodies) {
     Json& entry = json["bodies"][name];
+    if (!entry.is_object()) entry = Json::object();
     const double sim = entry.value("sim_seconds", 0.0) + timing.sim_seconds;
     const double wall = entry.value("wall_seconds", 0.0) + timing.wall_seconds;
     entry = {{"sim_seconds", rounded(sim)},

@@ -9,6 +9,7 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "meshing/cage.h"
+#include "meshing/harmonic.h"
 #include "meshing/tetrahedralize.h"
 #include "render/scene.h"
 #include "sim/control/controller.h"
@@ -42,7 +43,12 @@ Schema placed(std::string doc) {
 Schema rest_space_schema() {
   return variant("How the rest shape may change.", "type")
       .initially("cage")
-      .option("cage", meshing::cage_schema());
+      .option("cage", meshing::cage_schema().field(
+                          "harmonic_unknowns",
+                          integer("Size of the problem that gives the harmonic coordinates; more is more accurate.")
+                              .at_least(100)
+                              .at_most(1'000'000)
+                              .initially(meshing::HarmonicSettings().unknowns)));
 }
 
 Schema body_schema() {

@@ -40,8 +40,9 @@ TriangleMesh make_body_cage(const Job& job, const Value& body, const Hdf5Reader&
 Bytes make_body(const Job& job, const Value& body) {
   const Hdf5Reader mesh(job.out / mesh_file(body));
   const TriangleMesh cage = make_body_cage(job, body, mesh);
+  const int unknowns = static_cast<int>(body["rest_space"]["harmonic_unknowns"].as_integer());
   meshing::HarmonicReport report;
-  const Eigen::MatrixXd weights = meshing::harmonic_coordinates(cage, mesh.matrix("/X0"), {}, &report);
+  const Eigen::MatrixXd weights = meshing::harmonic_coordinates(cage, mesh.matrix("/X0"), {unknowns}, &report);
   if (report.projected > 0) {
     log_info(body["name"].as_string() + ": " + std::to_string(report.projected) +
              " vertices had slightly negative cage weights (down to " + number_text(report.most_negative) +

@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongScene{"wrong_type", "fps: 24", "fps: fast", {":2:15: error: frames.fps"}},
         WrongScene{"too_short", "duration_s: 0.25", "duration_s: 0.001", {":2:", "shorter than one frame"}},
         WrongScene{"no_controller", "type: hop", "type: hopp", {":12:", "hopp", "hop"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& parameter) { return parameter.param.name; });
 
 TEST(Check, ReportsAllErrorsAtOnce) {
   TinyScene scene;

@@ -163,8 +163,8 @@ TEST_P(ShortWrite, LeavesNoPartOfAFile) {
 INSTANTIATE_TEST_SUITE_P(Kinds, ShortWrite,
                          testing::Values("scene.resolved.yaml", "mesh/ball.h5", "weights/ball.h5", "sim/frames/0003.h5",
                                          "sim/steps.csv", "sim/summary.json", "render/tiny.0002.exr", "tiny.mp4"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
                            return name;
                          });

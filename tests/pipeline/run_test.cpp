@@ -314,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(Stages, InterruptedRun,
                                          Interruption{"stopped_in_render", "render/tiny.0003.exr", SIGTERM, 75},
                                          Interruption{"time_limit_in_render", "render/tiny.0003.exr", SIGUSR1, 75},
                                          Interruption{"ctrl_c_in_render", "render/tiny.0003.exr", SIGINT, 130}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
 }  // namespace vivify::pipeline

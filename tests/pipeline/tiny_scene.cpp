@@ -18,7 +18,7 @@ bodies:
     mesh: ball.obj
     position: [0, 0.5, 0]
     tetrahedra: {backend: tetgen, vertices: 60}
-    rest_space: {type: cage, vertices: 8}
+    rest_space: {type: cage, vertices: 8, harmonic_unknowns: 500}
     model: {type: solid3d, density: 100, stiffness: 30000}
     controller: {type: hop, heading_deg: 90}
     looks: {all: clay}
