@@ -11,7 +11,8 @@ namespace vivify {
 
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.F.rows() == 0) return 0;
-  const Eigen::Vector3d o = mesh.V.row(mesh.F(0, 0));  // near the surface: far from the origin the sum would cancel
+  const Eigen::Vector3d o =
+      mesh.V.row(mesh.F(0, 0));  // near the surface: far from the origin the sum would cancel
   double six_volumes = 0;
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
     const Eigen::Vector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)),

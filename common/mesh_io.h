@@ -7,11 +7,12 @@
 
 namespace vivify {
 
-// Reads OBJ, PLY, OFF, STL, glTF or GLB (through assimp): triangulated, node transforms applied, points and lines
-// dropped. Parts are the materials of the file, by name; texture coordinates are kept when every mesh of the file has
-// them. Vertices are joined only where position and texture coordinate agree.
-// Throws Error(io) when the file cannot be read and Error(geometry) when it holds no triangle, a non-finite vertex (its
-// index is named), or an index out of range.
+// Reads OBJ, OFF, STL, glTF and GLB (through assimp) or PLY: triangulated, node transforms applied, points
+// and lines dropped. Parts are the materials of the file by name, "default" where it names none; texture
+// coordinates (origin at the lower left) are kept when every mesh of the file has them. Vertices are joined
+// only where position and texture coordinate agree. Throws Error(io) when the file is missing or cannot be
+// read, and Error(geometry) when its content is broken, it holds no triangle, a vertex that is not finite
+// (its index is named), or an index out of range.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 // Writes a binary little-endian PLY (positions and triangles).
