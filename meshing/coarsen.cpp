@@ -43,7 +43,7 @@ TriangleMesh remesh_surface(const TriangleMesh& closed_surface, double edge_leng
   PMP::isotropic_remeshing(faces(surface), edge_length, surface,
                            CGAL::parameters::number_of_iterations(5)
                                .number_of_relaxation_steps(3)
-                               .protect_constraints(false)
+                               .protect_constraints(true)
                                .edge_is_constrained_map(sharp));
   surface.collect_garbage();
   return from_surface_mesh(surface);

@@ -22,6 +22,7 @@ constexpr double kCreaseShare =
     0.12;                          // eigenvalue of the normals, relative to the largest, that makes a crease
 constexpr double kMaxTurn = 0.85;  // cosine: a boundary triangle may turn by this when its vertex slides
 constexpr double kFirstStep = 0.25;  // of the mean edge length at a vertex
+constexpr double kLeash = 0.3;       // of the mean edge: how far a boundary vertex off the surface may go
 constexpr int kHalvings = 4;
 constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // outward, opposite corner k
 
@@ -55,6 +56,8 @@ class Improver {
         at_[idx(mesh.T(t, k))].push_back(t);
       }
     }
+    floor_ = mesh.V.col(1).minCoeff();
+    home_ = mesh.V;
     sine_.resize(tets_.size());
     for (std::size_t t = 0; t < tets_.size(); ++t) sine_[t] = sine_of(tets_[t]);
     on_surface_.resize(at_.size());
@@ -321,7 +324,12 @@ class Improver {
 
   bool move_vertex(int v) {
     const auto faces = boundary_at(v);
-    const std::vector<Vector> directions = search_directions(free_directions(faces));
+    const bool on_floor = settings_.keep_floor && mesh_.V(v, 1) <= floor_;
+    std::vector<Vector> free = free_directions(faces);
+    if (on_floor) {
+      for (Vector& direction : free) direction.y() = 0;
+    }
+    const std::vector<Vector> directions = search_directions(free);
     if (directions.empty()) return false;
     std::vector<Vector> normals;
     for (const auto& face : faces) normals.push_back(normal(face).normalized());
@@ -334,6 +342,7 @@ class Improver {
         ++edges;
       }
     }
+    const double leash = kLeash * step / edges;
     step *= kFirstStep / edges;
     const Vector start = x(v);
     Vector best_place = start;
@@ -348,6 +357,9 @@ class Improver {
           if (hit.distance > step) continue;
           place = hit.point;
         }
+        if (on_floor) place.y() = floor_;
+        if (!faces.empty() && !on_surface_[idx(v)] && (place - home_.row(v).transpose()).norm() > leash)
+          continue;
         mesh_.V.row(v) = place;
         bool turned = false;
         for (std::size_t f = 0; f < faces.size() && !turned; ++f)
@@ -370,6 +382,8 @@ class Improver {
   const ClosestPoint& surface_;
   const ImproveSettings& settings_;
   double goal_;
+  double floor_ = 0;
+  Points home_;  // where the vertices were at the start
   std::vector<Tet> tets_;
   std::vector<double> sine_;
   std::vector<std::vector<int>> at_;  // tetrahedra of each vertex

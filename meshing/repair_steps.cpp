@@ -29,8 +29,8 @@ namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 
-constexpr double kWrapAlpha = 0.02;     // of the diagonal
-constexpr double kWrapOffset = 0.0005;  // of the diagonal
+constexpr double kWrapAlpha = 0.025;    // of the diagonal
+constexpr double kWrapOffset = 0.0006;  // of the diagonal
 constexpr double kHollowVolume = 0.6;   // a wrap with less than this share of the filled volume is a shell
 constexpr double kNoVolume = 1e-9;      // of the cubed diagonal
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -27,31 +28,53 @@ constexpr double kCountTolerance = 0.15;
 constexpr double kCountAim = 0.03;
 constexpr int kCountSteps = 10;
 constexpr double kGoodAngle = 10;    // degrees: no further attempt when every dihedral angle is at least this
+constexpr double kGoodVolume = 0.1;  // and when the volume differs from the drawn one by at most this share
 constexpr double kWorstAngle = 2;    // degrees: an error below
 constexpr double kWantedAngle = 18;  // degrees: what improve_tetrahedra works towards
-constexpr double kOffsetShare = 0.06;  // offset of the wrap over its alpha
-constexpr double kFitDistance = 4;     // vertices within this many offsets go back onto the surface
+constexpr double kOffsetShare = 0.06;      // offset of the wrap over its alpha
+constexpr double kFitDistance = 4;         // vertices within this many offsets go back onto the surface
+constexpr double kCollapseShare = 0.6;     // vertices before even remeshing over vertices after it
+constexpr double kTetVolume = 0.3;         // largest tetrahedron, of the cubed mean edge of the surface
+constexpr double kAfterFailure = 0.96;     // edge length after a failed attempt, of that attempt
+constexpr double kUnchangedVolume = 0.03;  // a wrap that changes the volume by less closed nothing
+constexpr double kFloorThickness = 0.002;  // of the size: what counts as flat
+constexpr double kFloorShare = 0.003;      // of the area: smallest flat face to stand on
+constexpr double kFloorReach = 0.15;       // of the mean edge: vertices this near to the floor go down to it
 constexpr double kSurfaceTolerance =
     0.004;  // of the size: how far the boundary may move while shapes are improved
 
-// One attempt: the surface that was filled, and what came out.
+// The surface that a backend filled, and what came out.
 struct Filling {
   TetMesh mesh;
-  double surface_volume = 0;  // m³, of the surface that the backend filled
+  double surface_volume = 0;  // m³
   int surface_components = 0;
 };
+
+// A surface to be coarsened: the drawn one itself (offset 0), or a wrap of it that has no gaps and holes
+// below alpha.
+struct Base {
+  TriangleMesh surface;
+  double alpha = 0;
+  double offset = 0;
+};
+
+// Edges of even length suit the simulation; where they lead to nothing, edges that follow the curvature often
+// do.
+enum class Spread { even, by_curvature };
 
 struct Task {
   const TriangleMesh& drawn;
   const ClosestPoint& closest;
   const TetrahedralizeSettings& settings;
-  double size;  // diagonal of the drawn surface (m)
+  double size;      // diagonal of the drawn surface (m)
+  bool flat_floor;  // does it stand on a flat face?
+  double floor;     // its smallest height (m)
 };
 
 struct Backend {
   std::string_view name;
   double volume_tolerance;  // of the volume of the surface that was filled
-  Filling (*fill)(const Task& task, const TriangleMesh& wrap, double offset);
+  Filling (*fill)(const Task& task, const Base& base, Spread spread);
 };
 
 Bytes to_bytes(const TriangleMesh& mesh) { return ByteWriter().put(mesh.V).put(mesh.F).take(); }
@@ -75,22 +98,56 @@ double mean_edge(const TriangleMesh& mesh) {
   return sum / (3.0 * static_cast<double>(mesh.F.rows()));
 }
 
-// The wrap stands off the surface by its offset; its vertices go back, but for those that close a gap.
-TriangleMesh fitted(TriangleMesh mesh, const ClosestPoint& closest, double offset, double share) {
+double area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    const Eigen::RowVector3d a = mesh.V.row(mesh.F(f, 0));
+    sum += 0.5 * (mesh.V.row(mesh.F(f, 1)) - a).cross(mesh.V.row(mesh.F(f, 2)) - a).norm();
+  }
+  return sum;
+}
+
+// Is a part of the surface a flat face at its smallest height?
+bool stands_flat(const TriangleMesh& mesh, double floor, double size) {
+  double flat = 0;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    const Eigen::RowVector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)),
+                             c = mesh.V.row(mesh.F(f, 2));
+    if (std::max({a.y(), b.y(), c.y()}) < floor + kFloorThickness * size)
+      flat += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return flat > kFloorShare * area(mesh);
+}
+
+// A wrap stands off the surface by its offset; its vertices go back, but for those that close a gap. Vertices
+// just above the floor go down to it.
+TriangleMesh fitted(const Task& task, TriangleMesh mesh, double offset, double share) {
+  const double reach = offset > 0 ? kFitDistance * offset : task.size;
+  const double floor_reach = kFloorReach * mean_edge(mesh);
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
-    const ClosestPoint::Hit hit = closest(mesh.V.row(v));
-    if (hit.distance < kFitDistance * offset)
-      mesh.V.row(v) += share * (hit.point.transpose() - mesh.V.row(v));
+    const ClosestPoint::Hit hit = task.closest(mesh.V.row(v));
+    if (hit.distance < reach) mesh.V.row(v) += share * (hit.point.transpose() - mesh.V.row(v));
+    if (task.flat_floor && mesh.V(v, 1) < task.floor + share * floor_reach) mesh.V(v, 1) = task.floor;
   }
   return mesh;
 }
 
-// The wrap with `count` vertices, on the drawn surface as far as it then does not intersect itself.
-TriangleMesh coarse_surface(const Task& task, const TriangleMesh& wrap, int count, double offset) {
+// Vertices of a surface of this area with triangles of this edge length.
+double expected_vertices(double surface_area, double edge) {
+  return 2 / std::sqrt(3.0) * surface_area / (edge * edge);
+}
+
+// The base with triangles of about this edge length, on the drawn surface as far as it then does not
+// intersect itself.
+TriangleMesh coarse_surface(const Task& task, const Base& base, Spread spread, double edge) {
   return guarded_surface(task, "coarsening the surface", [&] {
-    const TriangleMesh coarse = collapse_surface(wrap, count);
-    for (const double share : {1.0, 0.75, 0.5, 0.0}) {
-      TriangleMesh mesh = fitted(coarse, task.closest, offset, share);
+    const double count = expected_vertices(area(base.surface), edge);
+    const double share = spread == Spread::even ? kCollapseShare : 1;
+    const auto collapsed = static_cast<int>(std::clamp(share * count, 6.0, 1e6));
+    TriangleMesh coarse = collapse_surface(base.surface, collapsed);
+    if (spread == Spread::even) coarse = remesh_surface(coarse, edge);
+    for (const double fit : {1.0, 0.75, 0.5, 0.0}) {
+      TriangleMesh mesh = fitted(task, coarse, base.offset, fit);
       if (!intersects_itself(mesh) && signed_volume(mesh) > 0) return mesh;
     }
     throw Error(ErrorKind::geometry, "the coarsened surface intersects itself");
@@ -103,27 +160,31 @@ double count_error(const Filling& filling, int wanted) {
   return std::abs(static_cast<double>(vertex_count(filling)) / wanted - 1);
 }
 
-// Calls make(parameter) with parameter ← next(parameter, wanted / count), and gives back the filling whose
-// count is nearest. Attempts that fail with Error(geometry) are passed over; when all do, the last one is
-// thrown.
-template <class Make, class Next>
-Filling search_count(int wanted, double parameter, const Make& make, const Next& next) {
+// Calls make(edge length) until the number of vertices is near `wanted`, and gives back the filling that came
+// nearest. Lengths that fail with Error(geometry) are passed over; when all do, the last error is thrown.
+template <class Make>
+Filling search_count(int wanted, double edge, const Make& make) {
   std::optional<Filling> best;
   std::optional<Error> failure;
+  double too_long = std::numeric_limits<double>::infinity(),
+         too_short = 0;  // edge lengths with too few, too many vertices
   for (int step = 0; step < kCountSteps; ++step) {
-    double ratio = 1.06;  // after a failure: a little finer
+    double factor = kAfterFailure;
     try {
-      Filling filling = make(parameter);
-      ratio = static_cast<double>(wanted) / std::max(1, vertex_count(filling));
+      Filling filling = make(edge);
+      const double ratio = static_cast<double>(std::max(1, vertex_count(filling))) / wanted;
       if (!best || count_error(filling, wanted) < count_error(*best, wanted)) best = std::move(filling);
       if (count_error(*best, wanted) <= kCountAim) break;
+      (ratio < 1 ? too_long : too_short) = edge;
+      factor = std::pow(std::clamp(ratio, 0.1, 10.0), 1 / 2.4);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::geometry) throw;
       failure = error;
     }
-    const double next_parameter = next(parameter, ratio);
-    if (next_parameter == parameter) break;
-    parameter = next_parameter;
+    edge *= factor;
+    if (too_short < too_long && (edge <= too_short || edge >= too_long)) {
+      edge = std::isfinite(too_long) && too_short > 0 ? std::sqrt(too_short * too_long) : edge;
+    }
   }
   if (!best) throw *failure;
   return std::move(*best);
@@ -133,16 +194,17 @@ ImproveSettings improve_settings(const Task& task) {
   ImproveSettings settings;
   settings.wanted_angle = kWantedAngle;
   settings.surface_tolerance = kSurfaceTolerance * task.size;
+  settings.keep_floor = task.flat_floor;
   return settings;
 }
 
-Filling fill_with_tetgen(const Task& task, const TriangleMesh& wrap, double offset) {
-  const auto most = static_cast<double>(wrap.V.rows());
-  const auto make = [&](double count) {
-    const TriangleMesh surface = coarse_surface(task, wrap, static_cast<int>(std::lround(count)), offset);
-    const double edge = mean_edge(surface) / bounding_box(surface.V).diagonal();
+Filling fill_with_tetgen(const Task& task, const Base& base, Spread spread) {
+  const auto make = [&](double edge) {
+    const TriangleMesh surface = coarse_surface(task, base, spread, edge);
+    const double relative_edge = mean_edge(surface) / bounding_box(surface.V).diagonal();
     std::array<char, 64> switches = {};
-    std::snprintf(switches.data(), switches.size(), "pYq1.414/10a%.12f", 0.3 * edge * edge * edge);
+    std::snprintf(switches.data(), switches.size(), "pYq1.414/10a%.12f",
+                  kTetVolume * std::pow(relative_edge, 3));
     Filling filling;
     filling.mesh = run_tetgen({surface.V, surface.F}, switches.data(), task.settings.limits).mesh;
     filling.surface_volume = signed_volume(surface);
@@ -150,25 +212,23 @@ Filling fill_with_tetgen(const Task& task, const TriangleMesh& wrap, double offs
     drop_unused_vertices(filling.mesh);
     return filling;
   };
-  const auto next = [&](double count, double ratio) {
-    return std::clamp(std::round(count * std::pow(ratio, 0.85)), 6.0, most);
-  };
-  return search_count(task.settings.vertices, std::min<double>(task.settings.vertices, most), make, next);
+  const double first = std::sqrt(2 / std::sqrt(3.0) * area(base.surface) / task.settings.vertices);
+  return search_count(task.settings.vertices, first, make);
 }
 
-Filling fill_with_cgal(const Task& task, const TriangleMesh& wrap, double offset) {
+Filling fill_with_cgal(const Task& task, const Base& base, Spread) {
   const TriangleMesh surface = guarded_surface(task, "fitting the surface", [&] {
-    for (const double share : {1.0, 0.5}) {
-      TriangleMesh mesh = fitted(wrap, task.closest, offset, share);
+    for (const double fit : {1.0, 0.5}) {
+      TriangleMesh mesh = fitted(task, base.surface, base.offset, fit);
       if (!intersects_itself(mesh)) return mesh;
     }
-    return wrap;
+    return base.surface;
   });
   const double volume = signed_volume(surface);
-  const auto make = [&](double size) {
+  const auto make = [&](double edge) {
     const Bytes bytes =
         run_guarded("meshing with CGAL", "choose the backend tetgen", task.settings.limits, [&] {
-          const TetMesh mesh = mesh_with_cgal(surface, size);
+          const TetMesh mesh = mesh_with_cgal(surface, edge);
           return ByteWriter().put(mesh.V).put(mesh.T).take();
         });
     Filling filling;
@@ -179,10 +239,7 @@ Filling fill_with_cgal(const Task& task, const TriangleMesh& wrap, double offset
     filling.surface_components = component_count(surface.F);
     return filling;
   };
-  const auto next = [&](double size, double ratio) {
-    return size * std::pow(std::clamp(ratio, 0.1, 10.0), -1.0 / 2.5);
-  };
-  return search_count(task.settings.vertices, 1.5 * std::cbrt(volume / task.settings.vertices), make, next);
+  return search_count(task.settings.vertices, 1.5 * std::cbrt(volume / task.settings.vertices), make);
 }
 
 constexpr std::array<Backend, 2> kBackends = {{
@@ -264,6 +321,27 @@ void sort_mesh(TetMesh& mesh) {
   }
 }
 
+// The surfaces to try for one size of the gaps to be closed: the drawn one itself when it has no such gaps,
+// else a wrap.
+std::vector<Base> bases(const Task& task, double factor) {
+  const double usual = 1 / std::clamp(2.4 * std::sqrt(task.settings.vertices), 10.0, 60.0);
+  const bool given = task.settings.gap > 0;
+  if (given && factor > 1) return {};  // what is to stay open stays open
+  Base wrap;
+  wrap.alpha = factor * task.size * (given ? task.settings.gap : usual);
+  wrap.offset = kOffsetShare * wrap.alpha;
+  wrap.surface = guarded_surface(task, "wrapping the surface",
+                                 [&] { return wrap_surface(task.drawn, wrap.alpha, wrap.offset); });
+  const double volume = signed_volume(task.drawn);
+  const double wrap_volume = signed_volume(wrap.surface) - wrap.offset * area(task.drawn);
+  const bool same = std::abs(wrap_volume / volume - 1) < kUnchangedVolume &&
+                    euler_characteristic(wrap.surface.F) == euler_characteristic(task.drawn.F) &&
+                    component_count(wrap.surface.F) == component_count(task.drawn.F);
+  if (!same) return {wrap};
+  if (factor != 1) return {wrap};  // the drawn surface was tried before
+  return {Base{task.drawn, 0, 0}, wrap};
+}
+
 std::optional<TetMesh> improved(const Task& task, const TetMesh& mesh, std::string& fault) {
   TetMesh better = mesh;
   improve_tetrahedra(better, task.closest, improve_settings(task));
@@ -277,7 +355,8 @@ std::optional<TetMesh> improved(const Task& task, const TetMesh& mesh, std::stri
 
 void add_notes(const Task& task, double alpha, TetrahedralizeResult& result) {
   const auto note = [&](const std::string& text) { result.notes.push_back(text); };
-  note("closed gaps and holes narrower than " + rounded(100 * alpha / task.size, 1) + " % of the size");
+  if (alpha > 0)
+    note("closed gaps and holes narrower than " + rounded(100 * alpha / task.size, 1) + " % of the size");
   const Triangles boundary = boundary_faces(result.mesh);
   const int parts = component_count(task.drawn.F);
   if (result.components < parts) {
@@ -310,36 +389,56 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
   const Backend& backend =
       find_entry(std::span<const Backend>(kBackends), settings.backend, "tetrahedra backend");
   const ClosestPoint closest(closed_surface);
-  const Task task = {closed_surface, closest, settings, bounding_box(closed_surface.V).diagonal()};
-  const double usual_alpha = task.size / std::clamp(2.4 * std::sqrt(settings.vertices), 10.0, 120.0);
-  const double first_alpha = settings.gap > 0 ? settings.gap * task.size : usual_alpha;
+  const Box box = bounding_box(closed_surface.V);
+  const Task task = {closed_surface,
+                     closest,
+                     settings,
+                     box.diagonal(),
+                     stands_flat(closed_surface, box.min.y(), box.diagonal()),
+                     box.min.y()};
 
   TetrahedralizeResult result;
   double result_alpha = 0;
   std::string fault;
-  for (const double factor : {1.0, 1.4, 0.7, 2.0, 0.5, 3.0}) {
-    if (settings.gap > 0 && factor > 1) continue;  // what was to stay open stays open
-    const double alpha = factor * first_alpha, offset = kOffsetShare * alpha;
+  double best_score = -std::numeric_limits<double>::infinity();
+  const double drawn_volume = signed_volume(closed_surface);
+  const auto attempt = [&](const Base& base, Spread spread) {
+    bool good = false;
     try {
-      const TriangleMesh wrap = guarded_surface(task, "wrapping the surface",
-                                                [&] { return wrap_surface(closed_surface, alpha, offset); });
-      Filling filling = backend.fill(task, wrap, offset);
+      Filling filling = backend.fill(task, base, spread);
       fault = find_fault(filling, backend, settings.vertices);
-      if (!fault.empty()) continue;
+      if (!fault.empty()) return false;
       std::optional<TetMesh> mesh = improved(task, filling.mesh, fault);
-      if (!mesh) continue;
+      if (!mesh) return false;
       const AngleRange angles = dihedral_range(*mesh);
-      if (angles.min <= result.min_dihedral) continue;
-      result.mesh = std::move(*mesh);
-      result.min_dihedral = angles.min;
-      result.max_dihedral = angles.max;
-      result_alpha = alpha;
-      if (angles.min >= kGoodAngle) break;
+      const double volume_ratio = tet_volumes(*mesh).sum() / drawn_volume;
+      const double score = std::min(angles.min / kGoodAngle, 1.0) - std::abs(volume_ratio - 1);
+      good = angles.min >= kGoodAngle && std::abs(volume_ratio - 1) <= kGoodVolume;
+      if (good || score > best_score) {
+        best_score = score;
+        result.volume_ratio = volume_ratio;
+        result.mesh = std::move(*mesh);
+        result.min_dihedral = angles.min;
+        result.max_dihedral = angles.max;
+        result_alpha = base.alpha;
+      }
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::geometry) throw;
       fault = error.what();
     }
-  }
+    return good;
+  };
+  const auto try_all = [&] {
+    for (const double factor : {1.0, 1.4, 0.7, 2.0, 0.5}) {
+      for (const Base& base : bases(task, factor)) {
+        for (const Spread spread : {Spread::even, Spread::by_curvature}) {
+          if (attempt(base, spread)) return;
+          if (backend.name == "cgal") break;  // it does not coarsen the surface itself
+        }
+      }
+    }
+  };
+  try_all();
   if (result.mesh.T.rows() == 0) {
     throw Error(ErrorKind::geometry,
                 "no tetrahedra with about " + std::to_string(settings.vertices) + " vertices: " + fault,
@@ -348,7 +447,10 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
   }
   sort_mesh(result.mesh);
   result.components = component_count(result.mesh.T);
-  result.volume_ratio = tet_volumes(result.mesh).sum() / signed_volume(closed_surface);
+  const ClosestPoint closest_on_mesh({result.mesh.V, boundary_faces(result.mesh), {}, {}, {}});
+  for (Eigen::Index v = 0; v < closed_surface.V.rows(); ++v) {
+    result.distance = std::max(result.distance, closest_on_mesh(closed_surface.V.row(v)).distance);
+  }
   add_notes(task, result_alpha, result);
   return result;
 }

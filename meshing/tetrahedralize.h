@@ -24,6 +24,7 @@ struct TetrahedralizeResult {
   double min_dihedral = 0;         // degrees
   double max_dihedral = 0;         // degrees
   double volume_ratio = 0;         // volume of the mesh over that of the drawn surface
+  double distance = 0;             // largest distance of a vertex of the drawn surface from the boundary (m)
   int components = 0;              // parts of the mesh
 };
 
