@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using testing_support::TemporaryFolder;
+using testing_support::write_quickly;
 
 // The tetrahedron with the corners 0, x, y, z; outward.
 const Points kPoints = (Points(4, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
@@ -167,6 +168,20 @@ TEST(ReadMesh, TriangulatesPolygonsAndDropsPointsAndLines) {
   EXPECT_EQ(bounding_box(mesh.V).max.maxCoeff(), 1);
 }
 
+TEST(ReadMesh, LinesAmongTrianglesAreDropped) {
+  const TemporaryFolder folder;
+  write_file_atomic(folder / "a.obj", kObj + "l 1 2\np 3\n");
+  write_file_atomic(folder / "a.off",
+                    "OFF\n4 5 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n2 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  write_file_atomic(folder / "a.ply",
+                    std::string(kPlyHeader).replace(kPlyHeader.find("face 4"), 6, "face 5") + kPlyPoints +
+                        "2 0 1\n" + kPlyFaces);
+  for (const char* name : {"a.obj", "a.off", "a.ply"}) {
+    SCOPED_TRACE(name);
+    expect_tetrahedron(read_mesh(folder / name));
+  }
+}
+
 TEST(ReadMesh, MissingFilesAreIoErrors) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of(folder / "none.obj", ErrorKind::io), HasSubstr("does not exist"));
@@ -229,15 +244,100 @@ TEST(ReadMesh, TruncatedFilesNeverCrash) {
   error_of(folder / "mesh.gltf", ErrorKind::geometry);
 }
 
+// A PLY file with everything that a reader must skip, in either byte order.
+std::string rich_ply(bool big_endian) {
+  std::string text =
+      std::string("ply\r\nformat binary_") + (big_endian ? "big" : "little") +
+      "_endian 1.0\r\ncomment made by a test\r\nobj_info x\r\nelement camera 1\r\nproperty short a\r\n"
+      "property list uchar float b\r\nelement vertex 4\r\nproperty float nx\r\nproperty double x\r\nproperty "
+      "float y\r\n"
+      "property float z\r\nproperty uchar red\r\nproperty float s\r\nproperty float t\r\nelement face 2\r\n"
+      "property int8 flag\r\nproperty list uint8 uint32 vertex_index\r\nproperty list uchar float "
+      "texcoord\r\nend_header\r\n";
+  const auto put = [&]<class T>(T value) {
+    std::string bytes;
+    append(bytes, value);
+    if (big_endian) std::reverse(bytes.begin(), bytes.end());
+    text += bytes;
+  };
+  put(std::int16_t{-3});
+  put(std::uint8_t{2});
+  put(1.0F);
+  put(2.0F);
+  for (int v = 0; v < 4; ++v) {
+    put(0.5F);
+    put(v == 1 || v == 2 ? 0.1 : 0.0);
+    put(v >= 2 ? 1.0F : 0.0F);
+    put(0.0F);
+    put(std::uint8_t{255});
+    put(v == 1 || v == 2 ? 1.0F : 0.0F);
+    put(v >= 2 ? 1.0F : 0.0F);
+  }
+  for (const std::vector<std::uint32_t>& face : {std::vector<std::uint32_t>{0, 1, 2, 3}, {3, 2, 1}}) {
+    put(std::int8_t{-1});
+    put(static_cast<std::uint8_t>(face.size()));
+    for (const std::uint32_t v : face) put(v);
+    put(std::uint8_t{1});
+    put(7.0F);
+  }
+  return text;
+}
+
+TEST(ReadPly, SkipsWhatItDoesNotKnowInEitherByteOrder) {
+  const TemporaryFolder folder;
+  for (const bool big_endian : {false, true}) {
+    write_file_atomic(folder / "a.ply", rich_ply(big_endian));
+    const TriangleMesh mesh = read_mesh(folder / "a.ply");
+    EXPECT_EQ(mesh.V.rows(), 4);
+    EXPECT_EQ(mesh.F.rows(), 3);
+    EXPECT_EQ(mesh.V(1, 0), 0.1);  // doubles stay doubles
+    ASSERT_EQ(mesh.UV.rows(), 4);
+    EXPECT_EQ(mesh.UV(2, 0), 1);
+    EXPECT_EQ(mesh.UV(2, 1), 1);
+  }
+}
+
+TEST(ReadPly, EveryTruncationIsAnError) {
+  const TemporaryFolder folder;
+  const std::string ascii = kPlyHeader + kPlyPoints + kPlyFaces, binary = rich_ply(false);
+  for (std::size_t size = 1; size + 1 < ascii.size(); size += 3) {
+    write_quickly(folder / "a.ply", ascii.substr(0, size));
+    error_of(folder / "a.ply", ErrorKind::geometry);
+  }
+  for (std::size_t size = 1; size < binary.size(); size += 3) {
+    write_quickly(folder / "a.ply", binary.substr(0, size));
+    error_of(folder / "a.ply", ErrorKind::geometry);
+  }
+}
+
+TEST(ReadPly, BrokenHeadersAreErrors) {
+  const TemporaryFolder folder;
+  const auto error_with = [&](const std::string& from, const std::string& to) {
+    std::string text = kPlyHeader + kPlyPoints + kPlyFaces;
+    text.replace(text.find(from), from.size(), to);
+    write_file_atomic(folder / "a.ply", text);
+    return error_of(folder / "a.ply", ErrorKind::geometry);
+  };
+  EXPECT_THAT(error_with("ascii", "text"), HasSubstr("unknown format 'text'"));
+  EXPECT_THAT(error_with("vertex 4", "vertex -4"), HasSubstr("odd header line"));
+  EXPECT_THAT(error_with("vertex 4", "vertex 4000000000"), HasSubstr("a.ply"));
+  EXPECT_THAT(error_with("float x", "half x"), HasSubstr("unknown type 'half'"));
+  EXPECT_THAT(error_with("float x", "float a"), HasSubstr("without x, y or z"));
+  EXPECT_THAT(error_with("vertex_indices", "corners"), HasSubstr("without vertex_indices"));
+  EXPECT_THAT(error_with("1 0 0", "1 O 0"), HasSubstr("'O' for a number, in element vertex"));
+  EXPECT_THAT(error_with("3 0 2 1", "3 0 -2 1"), HasSubstr("refers to vertex -2"));
+  EXPECT_THAT(error_with("3 0 2 1", "-3 0 2 1"), HasSubstr("list of odd length"));
+}
+
 TEST(WritePly, ReadsBack) {
   const TemporaryFolder folder;
   TriangleMesh mesh;
-  mesh.V = kPoints;
+  mesh.V = kPoints * 0.1;
   mesh.F = kFaces;
   write_ply(folder / "a.ply", mesh);
   const TriangleMesh again = read_mesh(folder / "a.ply");
-  EXPECT_EQ(again.V, kPoints);
-  EXPECT_EQ(again.F, kFaces);
+  EXPECT_EQ(again.V, mesh.V);
+  EXPECT_EQ(again.F, mesh.F);
 }
 
 }  // namespace
