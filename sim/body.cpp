@@ -212,11 +212,11 @@ void Body::save(Hdf5Writer& file, const std::string& group) const {
   file.put(group + "/v", RowMatrixXd(unflatten(v_)));
   file.put(group + "/p", p());
   file.put(group + "/restart/q", q_);
-  RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 5);
+  RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 6);
   for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
     const ContactMemory& memory = contact_memory_[i];
-    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.normal_force,
-        memory.anchor.transpose();
+    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.collider,
+        memory.normal_force, memory.anchor.transpose();
   }
   file.put(group + "/restart/contact", contact);
   file.put(group + "/restart/controller", controller_->state());
@@ -236,7 +236,7 @@ void Body::restore(const Hdf5Reader& file, const std::string& group) {
   q_ = q;
   for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
     const auto row = contact.row(static_cast<Eigen::Index>(i));
-    contact_memory_[i] = {row[0] != 0, row.tail<3>().transpose(), row[1]};
+    contact_memory_[i] = {row[0] != 0, row.tail<3>().transpose(), row[2], static_cast<int>(row[1])};
   }
   controller_->restore(file.vector(group + "/restart/controller"));
 }

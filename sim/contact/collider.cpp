@@ -106,7 +106,7 @@ Collider::Collider(std::string name, TriangleMesh surface, double friction)
       const Eigen::Vector3d to_last = (corner[(k + 2) % 3] - corner[k]).normalized();
       const double angle = std::acos(std::clamp(to_next.dot(to_last), -1.0, 1.0));
       tree_->corner_normals[F(f, k)] += angle * normal;
-      const auto edge = std::minmax(F(f, k), F(f, (k + 1) % 3));
+      const auto edge = std::minmax({F(f, k), F(f, (k + 1) % 3)});
       const auto [it, inserted] = tree_->edge_normals.try_emplace({edge.first, edge.second}, normal);
       if (!inserted) it->second += normal;
     }
@@ -127,7 +127,7 @@ SurfacePoint Collider::nearest(const Eigen::Vector3d& point) const {
   const int feature = query.best.feature;
   Eigen::Vector3d pseudo_normal = tree_->face_normals[f];
   if (feature >= 4) {
-    const auto edge = std::minmax(surface_.F(f, feature - 4), surface_.F(f, (feature - 3) % 3));
+    const auto edge = std::minmax({surface_.F(f, feature - 4), surface_.F(f, (feature - 3) % 3)});
     pseudo_normal = tree_->edge_normals.at({edge.first, edge.second});
   } else if (feature >= 1) {
     pseudo_normal = tree_->corner_normals[surface_.F(f, feature - 1)];

@@ -13,7 +13,8 @@ ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& par
     for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
       const SurfacePoint nearest = colliders[c].nearest(y);
       if (nearest.distance > reach) continue;
-      const double limit = memory[i].touching ? colliders[c].friction() * memory[i].normal_force : 0.0;
+      const bool touched = memory[i].touching && memory[i].collider == c;
+      const double limit = touched ? colliders[c].friction() * memory[i].normal_force : 0.0;
       contacts_.push_back({i, c, nearest.position, nearest.normal, memory[i].anchor,
                            Friction(parameters.friction_stiffness, limit)});
     }
@@ -114,7 +115,8 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
     after.touching = true;
     after.normal_force = force;
     after.anchor = y;
-    if (memory[contact.point].touching) {
+    after.collider = contact.collider;
+    if (memory[contact.point].touching && memory[contact.point].collider == contact.collider) {
       after.anchor = y - contact.friction.return_map(tangential(contact, y - contact.anchor));
     }
   }

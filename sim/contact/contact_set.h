@@ -34,6 +34,7 @@ struct ContactMemory {
   bool touching = false;  // the normal force was positive at the end of the last step
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m
   double normal_force = 0;                           // f_n at the end of the last step, N
+  int collider = -1;                                 // that it touched
 };
 
 struct ContactParameters {

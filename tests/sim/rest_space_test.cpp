@@ -1,0 +1,109 @@
+#include "sim/rest/rest_space.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "tests/sim/fixtures.h"
+
+namespace vivify::sim {
+namespace {
+
+struct Cage {
+  Cage() : mesh(small_box()), space(make_cage_space(mesh.V, trilinear_weights(mesh.V))) {}
+  TetMesh mesh;
+  RestSpace space;
+};
+
+// Displacements of the 8 cage vertices of trilinear_weights for a displacement field.
+template <class Field>
+Vector cage_motion(const Points& V, const Field& field) {
+  const Box box = bounding_box(V);
+  const Eigen::Vector3d margin = 0.1 * (box.max - box.min), low = box.min - margin, high = box.max + margin;
+  Vector p(24);
+  for (int c = 0; c < 8; ++c) {
+    const Eigen::Vector3d corner(c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(),
+                                 c & 4 ? high.z() : low.z());
+    p.segment<3>(3 * c) = field(corner);
+  }
+  return p;
+}
+
+TEST(CageSpace, StartsAtTheRestShape) {
+  const Cage cage;
+  EXPECT_EQ((cage.space.shape(Vector::Zero(cage.space.free_parameters())) - flat(cage.mesh.V)).norm(), 0);
+  EXPECT_EQ(cage.space.parameters(), 24);
+}
+
+TEST(CageSpace, ReproducesLinearMotionsOfTheCage) {
+  const Cage cage;
+  CounterRng rng(1);
+  Eigen::Matrix3d M;
+  for (int k = 0; k < 9; ++k) M(k) = rng.uniform(-1, 1);
+  const Eigen::Vector3d b = random_vector(3, 1, rng);
+  const auto field = [&](const Eigen::Vector3d& X) -> Eigen::Vector3d { return M * X + b; };
+  const Vector moved = cage.space.L * cage_motion(cage.mesh.V, field);
+  for (Eigen::Index i = 0; i < cage.mesh.V.rows(); ++i) {
+    EXPECT_LE((moved.segment<3>(3 * i) - field(cage.mesh.V.row(i).transpose())).norm(), 1e-14);
+  }
+}
+
+TEST(CageSpace, RemovesTheSixRigidMotionsAndNothingElse) {
+  const Cage cage;
+  const RestSpace& space = cage.space;
+  EXPECT_EQ(space.free_parameters(), 18);
+  const Matrix gram = space.basis.transpose() * space.basis;
+  EXPECT_LE((gram - Matrix::Identity(18, 18)).norm(), 1e-13);
+  // Rigid motions of the cage are orthogonal to the basis.
+  for (int motion = 0; motion < 6; ++motion) {
+    const auto field = [&](const Eigen::Vector3d& X) -> Eigen::Vector3d {
+      const Eigen::Vector3d axis = Eigen::Vector3d::Unit(motion % 3);
+      return motion < 3 ? axis : axis.cross(X);
+    };
+    const Vector p = cage_motion(cage.mesh.V, field);
+    EXPECT_LE((space.basis.transpose() * p).norm(), 1e-12 * p.norm());
+  }
+  // What is removed is rigid: any p orthogonal to the basis changes no edge to first order.
+  const Eigen::FullPivLU<Matrix> lu(space.basis.transpose());
+  const Matrix removed = lu.kernel();
+  ASSERT_EQ(removed.cols(), 6);
+  const Vector X = flat(cage.mesh.V);
+  for (int k = 0; k < 6; ++k) {
+    const Vector u = space.L * removed.col(k);
+    for (int i = 0; i < 27; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const Eigen::Vector3d edge = X.segment<3>(3 * i) - X.segment<3>(3 * j),
+                              du = u.segment<3>(3 * i) - u.segment<3>(3 * j);
+        EXPECT_LE(std::abs(edge.dot(du)), 1e-12 * u.norm());
+      }
+    }
+  }
+  // What is kept changes the shape: the regulariser sees every direction.
+  const BodyModel body = make_body_model(box_input(cage.mesh, {.regularizer = "{rate: 0}"}), {});
+  const ContactSet none;
+  const Vector zero = Vector::Zero(18);
+  const Goals goals = make_goals({}, body.rest.X0, 0.02);
+  const StepProblem problem(body, none, goals, body.rest.X0, zero, 0.02);
+  const Vector curvature =
+      Eigen::SelfAdjointEigenSolver<Matrix>(problem.regularizer_gauss_newton(problem.rest_point(zero, true)))
+          .eigenvalues();
+  EXPECT_GT(curvature.minCoeff(), 1e-4 * curvature.maxCoeff());
+}
+
+TEST(CageSpace, FewerRigidMotionsAreRemovedWhenTheCageCannotMakeThem) {
+  // One handle that scales the height: no rigid motion at all.
+  const Vector X0 = flat(small_box().V);
+  Matrix L = Matrix::Zero(X0.size(), 1);
+  for (Eigen::Index i = 1; i < X0.size(); i += 3) L(i, 0) = X0[i];
+  EXPECT_EQ(shape_changing_basis(X0, L).cols(), 1);
+  // Translations only.
+  Matrix T = Matrix::Zero(X0.size(), 4);
+  for (Eigen::Index i = 0; i < X0.size(); ++i) T(i, i % 3) = 1;
+  T.col(3) = L;
+  const Matrix basis = shape_changing_basis(X0, T);
+  ASSERT_EQ(basis.cols(), 1);
+  EXPECT_NEAR(std::abs(basis(3, 0)), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace vivify::sim

@@ -1,0 +1,230 @@
+// Derivatives of the step problem against central differences: D, E, A, B, C, the regulariser, with contacts
+// that press, stick and slip.
+#include "sim/solve/step_problem.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/fixtures.h"
+
+namespace vivify::sim {
+namespace {
+
+constexpr double kEps = 1e-6;
+
+class Derivatives : public ::testing::TestWithParam<double> {
+ protected:
+  Derivatives() : step(42, GetParam()), problem(*step.problem) {
+    CounterRng rng(1);
+    lambda = random_vector(step.x.size(), 1e-3, rng);
+    direction = random_vector(step.x.size(), 1, rng);
+    direction_q = random_vector(step.q.size(), 1, rng);
+  }
+  RestPoint rest(const Vector& q) const { return problem.rest_point(q, true); }
+  DeformedPoint at(const Vector& x) const { return problem.deformed_point(x); }
+  Matrix stiffness(const Vector& x, const Vector& q) {
+    problem.stiffness(at(x), rest(q), step.workspace->D);
+    return dense(step.workspace->D);
+  }
+  Vector residual(const Vector& x, const Vector& q) const { return problem.residual(at(x), rest(q)); }
+  Vector stiffness_lambda(const Vector& x, const Vector& q) {
+    problem.stiffness(at(x), rest(q), step.workspace->D);
+    return step.workspace->D * lambda;
+  }
+  Vector gradient_q(const Vector& x, const Vector& q) const {
+    return problem.regularizer_gradient(rest(q)) + problem.multiply_Et(at(x), rest(q), lambda);
+  }
+
+  RandomStep step;
+  const StepProblem& problem;
+  Vector lambda, direction, direction_q;
+};
+
+TEST_P(Derivatives, ContactsReallyPressStickAndSlip) {
+  EXPECT_GE(step.pressing, 5);
+  EXPECT_GE(step.above, 3);
+  EXPECT_GE(step.sticking, 3);
+  if (!std::isinf(GetParam())) {
+    EXPECT_GE(step.slipping, 3);
+  }
+  EXPECT_GT(step.room, 10 * kEps);
+  EXPECT_GT(problem.smallest_element(at(step.x)), 0.1);
+  EXPECT_LT(problem.smallest_element(at(step.x)), 0.9);
+}
+
+TEST_P(Derivatives, ResidualIsTheGradientOfThePotential) {
+  const auto potential = [&](const Vector& x) {
+    return Vector::Constant(1, problem.potential(at(x), rest(step.q)));
+  };
+  const Vector c = residual(step.x, step.q);
+  EXPECT_LE(relative(c.transpose(), differences(potential, step.x, kEps)), 1e-6);
+  EXPECT_NEAR(
+      convergence(potential, step.x, direction, Vector::Constant(1, c.dot(direction)), 0.2 * step.room), 4,
+      0.1);
+}
+
+TEST_P(Derivatives, StiffnessIsTheDerivativeOfTheResidual) {
+  const auto c = [&](const Vector& x) { return residual(x, step.q); };
+  const Matrix D = stiffness(step.x, step.q);
+  EXPECT_LE(relative(D, differences(c, step.x, kEps)), 1e-6);
+  EXPECT_NEAR(convergence(c, step.x, direction, D * direction, 0.2 * step.room), 4, 0.1);
+}
+
+TEST_P(Derivatives, EIsTheDerivativeOfTheResidualByTheParameters) {
+  const auto c = [&](const Vector& q) { return residual(step.x, q); };
+  const Matrix E =
+      problem.multiply_E(at(step.x), rest(step.q), Matrix::Identity(step.q.size(), step.q.size()));
+  EXPECT_LE(relative(E, differences(c, step.q, kEps)), 1e-6);
+  EXPECT_NEAR(convergence(c, step.q, direction_q, E * direction_q, 1e-3), 4, 0.1);
+  const Matrix Et =
+      problem.multiply_Et(at(step.x), rest(step.q), Matrix::Identity(step.x.size(), step.x.size()));
+  EXPECT_LE(relative(Et.transpose(), E), 1e-14);
+}
+
+TEST_P(Derivatives, ProductsWithEAndItsTransposeAreAdjoint) {
+  CounterRng rng(77);
+  const Matrix dq = random_vector(step.q.size(), 1, rng), y = random_vector(step.x.size(), 1, rng);
+  const double a = y.col(0).dot(problem.multiply_E(at(step.x), rest(step.q), dq).col(0));
+  const double b = dq.col(0).dot(problem.multiply_Et(at(step.x), rest(step.q), y).col(0));
+  EXPECT_NEAR(a, b, 1e-12 * std::abs(a));
+}
+
+TEST_P(Derivatives, BlockAIsTheSecondDerivativeOfTheLagrangian) {
+  const auto f = [&](const Vector& x) { return stiffness_lambda(x, step.q); };
+  problem.block_A(at(step.x), rest(step.q), lambda, step.workspace->block);
+  const Matrix A = dense(step.workspace->block);
+  EXPECT_LE(relative(A, differences(f, step.x, kEps)), 1e-6);
+  EXPECT_NEAR(convergence(f, step.x, direction, A * direction, 0.2 * step.room), 4, 0.1);
+}
+
+TEST_P(Derivatives, BlockBIsTheMixedSecondDerivative) {
+  const auto by_x = [&](const Vector& x) { return gradient_q(x, step.q); };
+  const auto by_q = [&](const Vector& q) { return stiffness_lambda(step.x, q); };
+  const Matrix B = problem.block_B(at(step.x), rest(step.q), lambda);
+  EXPECT_LE(relative(B, differences(by_x, step.x, kEps)), 1e-6);
+  EXPECT_LE(relative(B.transpose(), differences(by_q, step.q, kEps)), 1e-6);
+  // By q, that is; by x, E is quadratic, and the differences are exact.
+  EXPECT_NEAR(convergence(by_q, step.q, direction_q, B.transpose() * direction_q, 1e-3), 4, 0.1);
+  EXPECT_LE(relative(B, differences(by_x, step.x, 1e-2)), 1e-10);
+}
+
+TEST_P(Derivatives, BlockCIsTheSecondDerivativeByTheParameters) {
+  const auto f = [&](const Vector& q) { return gradient_q(step.x, q); };
+  const Matrix C = problem.block_C(at(step.x), rest(step.q), lambda);
+  EXPECT_LE(relative(C, differences(f, step.q, kEps)), 1e-6);
+  EXPECT_NEAR(convergence(f, step.q, direction_q, C * direction_q, 1e-3), 4, 0.1);
+}
+
+// The contacts alone, so that no stiff element hides them.
+TEST_P(Derivatives, ContactForcesStiffnessAndBlockA) {
+  const ContactSet& contacts = step.contacts;
+  const auto energy = [&](const Vector& x) { return Vector::Constant(1, contacts.energy(x)); };
+  const auto gradient = [&](const Vector& x) {
+    Vector g = Vector::Zero(x.size());
+    contacts.add_gradient(x, g);
+    return g;
+  };
+  SymmetricMatrix H(*step.body.pattern), A(*step.body.pattern);
+  contacts.add_hessian(step.x, step.body.contact_slots, H);
+  contacts.add_block_a(step.x, lambda, step.body.contact_slots, A);
+  const auto hessian_lambda = [&](const Vector& x) {
+    SymmetricMatrix at_x(*step.body.pattern);
+    contacts.add_hessian(x, step.body.contact_slots, at_x);
+    return Vector(at_x * lambda);
+  };
+  const double eps = 1e-3 * step.room;
+  EXPECT_LE(relative(gradient(step.x).transpose(), differences(energy, step.x, eps)), 1e-6);
+  EXPECT_LE(relative(dense(H), differences(gradient, step.x, eps)), 1e-6);
+  EXPECT_LE(relative(dense(A), differences(hessian_lambda, step.x, eps)), 1e-6);
+  if (!std::isinf(GetParam())) {  // otherwise all is quadratic or cubic, and only the first has an error
+    EXPECT_NEAR(convergence(gradient, step.x, direction, dense(H) * direction, 0.2 * step.room), 4, 0.1);
+    EXPECT_NEAR(convergence(hessian_lambda, step.x, direction, dense(A) * direction, 0.2 * step.room), 4,
+                0.1);
+  }
+  EXPECT_NEAR(convergence(energy, step.x, direction, Vector::Constant(1, gradient(step.x).dot(direction)),
+                          0.2 * step.room),
+              4, 0.1);
+  const Eigen::Vector3d force = contacts.total_force(step.x);
+  const Points nodal = rows(gradient(step.x));
+  EXPECT_LE((nodal.colwise().sum().transpose() + force).norm(), 1e-12 * force.norm());
+}
+
+std::string friction_name(const ::testing::TestParamInfo<double>& tested) {
+  return std::isinf(tested.param) ? "infinite" : "mu" + std::to_string(static_cast<int>(10 * tested.param));
+}
+INSTANTIATE_TEST_SUITE_P(Friction, Derivatives, ::testing::Values(1.0, 0.3, INFINITY), friction_name);
+
+TEST(Regularizer, IsZeroAtTheInitialShapeAndAfterNoChange) {
+  const RandomStep step(3, 1);
+  const Vector zero = Vector::Zero(step.q.size());
+  const StepProblem still(step.body, step.contacts, step.goals, step.x, zero, 1.0 / 48);
+  const RestPoint rest = still.rest_point(zero, true);
+  EXPECT_EQ(rest.regularizer, 0);
+  EXPECT_EQ(still.regularizer_gradient(rest).norm(), 0);
+  EXPECT_EQ(rest.smallest_element, 1);
+}
+
+TEST(Regularizer, GradientAndHessians) {
+  const RandomStep step(4, 1);
+  const StepProblem& problem = *step.problem;
+  const auto value = [&](const Vector& q) {
+    return Vector::Constant(1, problem.rest_point(q, false).regularizer);
+  };
+  const auto gradient = [&](const Vector& q) {
+    return problem.regularizer_gradient(problem.rest_point(q, true));
+  };
+  const RestPoint rest = problem.rest_point(step.q, true);
+  const Vector g = problem.regularizer_gradient(rest);
+  EXPECT_LE(relative(g.transpose(), differences(value, step.q, 1e-6)), 1e-6);
+  CounterRng rng(8);
+  const Vector d = random_vector(step.q.size(), 1, rng);
+  EXPECT_NEAR(convergence(value, step.q, d, Vector::Constant(1, g.dot(d)), 1e-3), 4, 0.1);
+  // With λ = 0, C is the exact Hessian.
+  const Matrix C = problem.block_C(problem.deformed_point(step.x), rest, Vector::Zero(step.x.size()));
+  EXPECT_LE(relative(C, differences(gradient, step.q, 1e-6)), 1e-6);
+  EXPECT_NEAR(convergence(gradient, step.q, d, C * d, 1e-3), 4, 0.1);
+  // Gauss–Newton is the exact Hessian where the residuals vanish, up to the rate term both share.
+  const RestPoint initial = problem.rest_point(Vector::Zero(step.q.size()), true);
+  const Matrix exact = problem.block_C(problem.deformed_point(step.x), initial, Vector::Zero(step.x.size()));
+  EXPECT_LE(relative(problem.regularizer_gauss_newton(initial), exact), 1e-12);
+  // Elsewhere it is JᵀCJ of the scaled residuals, by differences.
+  const auto residuals = [&](const Vector& q) {
+    const RestPoint at = problem.rest_point(q, false);
+    Vector all(at.S[0].size() + at.S[1].size());
+    for (int f = 0, row = 0; f < 2; row += static_cast<int>(at.S[f].size()), ++f) {
+      all.segment(row, at.S[f].size()) =
+          step.body.regularizer_coefficients[f].cwiseSqrt().cwiseProduct(at.S[f] - step.body.S0[f]);
+    }
+    return all;
+  };
+  const Matrix J = differences(residuals, step.q, 1e-6);
+  const Matrix gauss_newton =
+      J.transpose() * J + step.body.rate_weight * Matrix::Identity(step.q.size(), step.q.size());
+  EXPECT_LE(relative(problem.regularizer_gauss_newton(rest), gauss_newton), 1e-8);
+}
+
+TEST(Regularizer, ScalesTheMaterial) {
+  BodyInput input = box_input(small_box(), {.regularizer = "{stiffness: 0.5, volume_stiffness: 0.25}"});
+  const BodyModel body = make_body_model(input, {});
+  EXPECT_LE(relative(body.regularizer_coefficients[0], 0.5 * body.elastic[0]->coefficients()), 1e-15);
+  EXPECT_LE(relative(body.regularizer_coefficients[1], 0.25 * body.elastic[1]->coefficients()), 1e-15);
+}
+
+TEST(StepProblem, InertiaAndGravityGiveImplicitEuler) {
+  // Without deformation and contact, c = M (x − x̃) / h².
+  const BodyModel body = make_body_model(box_input(small_box()), {});
+  const ContactSet none;
+  const Goals no_goals = make_goals({}, body.rest.X0, 0.01);
+  CounterRng rng(2);
+  const Vector x_tilde = body.rest.X0 + Vector::Constant(body.rest.X0.size(), 0.3);
+  const StepProblem problem(body, none, no_goals, x_tilde, Vector::Zero(body.rest.free_parameters()), 0.01);
+  const Vector c = problem.residual(problem.deformed_point(body.rest.X0),
+                                    problem.rest_point(Vector::Zero(body.rest.free_parameters()), false));
+  for (Eigen::Index i = 0; i < body.mass.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(c[3 * i + axis], -0.3 * body.mass[i] / 1e-4, 1e-9);
+  }
+  EXPECT_NEAR(body.mass.sum(), 300 * 0.4 * 0.5 * 0.45, 1e-9);
+  EXPECT_NEAR(body.weight, body.mass.sum() * 9.81, 1e-9);
+}
+
+}  // namespace
+}  // namespace vivify::sim
