@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "common/error.h"

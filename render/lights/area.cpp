@@ -110,10 +110,10 @@ class AreaLight : public Light {
     const float z0 = -q.h;
     // Inner angles of the spherical rectangle from the normals of its four sides; z components only are
     // needed.
-    const float nz0 = q.y0 / std::sqrt(z0 * z0 + q.y0 * q.y0);
-    const float nz1 = -x1 / std::sqrt(z0 * z0 + x1 * x1);
-    const float nz2 = -y1 / std::sqrt(z0 * z0 + y1 * y1);
-    const float nz3 = q.x0 / std::sqrt(z0 * z0 + q.x0 * q.x0);
+    const float nz0 = -q.y0 / std::sqrt(z0 * z0 + q.y0 * q.y0);
+    const float nz1 = x1 / std::sqrt(z0 * z0 + x1 * x1);
+    const float nz2 = y1 / std::sqrt(z0 * z0 + y1 * y1);
+    const float nz3 = -q.x0 / std::sqrt(z0 * z0 + q.x0 * q.x0);
     const float g0 = std::acos(std::clamp(-nz0 * nz1, -1.0f, 1.0f));
     const float g1 = std::acos(std::clamp(-nz1 * nz2, -1.0f, 1.0f));
     const float g2 = std::acos(std::clamp(-nz2 * nz3, -1.0f, 1.0f));

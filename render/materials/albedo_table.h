@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/vec.h"
+#include "render/warp.h"
 
 namespace vivify::render {
 
@@ -18,9 +19,15 @@ class AlbedoTable {
   float at(float cosine) const;               // E(|cos θ|)
   float average() const { return average_; }  // 2 ∫ E(μ) μ dμ
 
+  // A direction on the upper side, about in proportion to the light (1 − E(cos θ)) cos θ that is lost, and
+  // its density.
+  Vec3 sample_lost(const Vec2& u) const;
+  float lost_pdf(float cosine) const;
+
  private:
   std::vector<float> values_;  // at cos θ = (i / (n − 1))²
   float average_ = 0;
+  Distribution1D lost_;  // over cells of √cos θ
 };
 
 }  // namespace vivify::render

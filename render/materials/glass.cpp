@@ -11,8 +11,8 @@ class Glass : public Material {
  public:
   Glass(ColorSource color, float roughness, float ior)
       : Material(std::move(color)),
-        smooth_(roughness < kMirrorRoughness),
-        ggx_(alpha_of(std::max(roughness, kMirrorRoughness))),
+        smooth_(roughness < static_cast<float>(kMirrorRoughness)),
+        ggx_(alpha_of(std::max(roughness, static_cast<float>(kMirrorRoughness)))),
         ior_(ior) {
     if (smooth_) return;
     const auto albedo = [this](float eta) {

@@ -4,7 +4,6 @@
 #include "render/materials/albedo_table.h"
 #include "render/materials/material.h"
 #include "render/materials/microfacet.h"
-#include "render/warp.h"
 
 namespace vivify::render {
 namespace {
@@ -27,15 +26,15 @@ class Metal : public Material {
     const Vec3 first = fresnel_schlick(dot(wo, m), color) * (d * ggx_.g2(wo, wi) / (4 * wo.z));
     const float spread =
         lost * (1 - albedo_.at(wi.z)) * wi.z / (kPi * std::max(1 - albedo_.average(), 1e-6f));
-    const float share = diffuse_share(lost);
+    const float share = lost_share(lost);
     return {first + further_bounces(color) * spread,
-            (1 - share) * ggx_.g1(wo) * d / (4 * wo.z) + share * wi.z / kPi};
+            (1 - share) * ggx_.g1(wo) * d / (4 * wo.z) + share * albedo_.lost_pdf(wi.z)};
   }
 
   bool sample(const Vec3& color, const Vec3& outgoing, const Vec3& u, BsdfSample& sample) const override {
     const Vec3 wo = {outgoing.x, outgoing.y, std::abs(outgoing.z)};
-    if (u.z < diffuse_share(1 - albedo_.at(wo.z))) {
-      sample.wi = sample_cosine_hemisphere({u.x, u.y});
+    if (u.z < lost_share(1 - albedo_.at(wo.z))) {
+      sample.wi = albedo_.sample_lost({u.x, u.y});
     } else {
       sample.wi = reflect(wo, ggx_.sample_normal(wo, {u.x, u.y}));
     }
@@ -49,7 +48,7 @@ class Metal : public Material {
   }
 
  private:
-  static float diffuse_share(float lost) { return std::clamp(lost, 0.0f, 1.0f); }
+  static float lost_share(float lost) { return std::clamp(lost, 0.0f, 1.0f); }
 
   // Mean reflectance of all orders of further bounces; 1 for a white metal.
   Vec3 further_bounces(const Vec3& f0) const {

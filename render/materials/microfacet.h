@@ -8,7 +8,7 @@ namespace vivify::render {
 
 // Roughness of the scene file to the width α of the distribution. Below kMirrorRoughness a surface counts as
 // smooth.
-constexpr float kMirrorRoughness = 0.05f;
+constexpr double kMirrorRoughness = 0.05;
 constexpr float alpha_of(float roughness) { return roughness * roughness; }
 
 // All directions are on the upper side (z > 0).

@@ -12,7 +12,7 @@ class Checker : public Texture {
         scale_(static_cast<float>(value["scale"].as_number())) {}
 
   Vec3 value(const TexturePoint& point) const override {
-    const float width = std::max(point.width * scale_, 1e-6f);
+    const float width = std::max(point.width * scale_, 1e-3f);
     // ±1 stripes in each direction, box-filtered; their product is the board.
     const float sign = stripes(point.uv.x * scale_, width) * stripes(point.uv.y * scale_, width);
     return even_ * (0.5f + 0.5f * sign) + odd_ * (0.5f - 0.5f * sign);
