@@ -2,14 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <cstdio>
 #include <iostream>
-#include <map>
 
 #include "common/error.h"
 #include "common/log.h"
-#include "common/parallel.h"
-#include "common/progress.h"
 #include "common/stop.h"
 #include "pipeline/commands.h"
 #include "pipeline/stage.h"
@@ -21,8 +17,8 @@ namespace {
 constexpr int kUsageExit = 2;
 constexpr int kInternalExit = 70;
 
-// `--force` has an optional value, which the parser would look for in the next argument (the scene file): the value
-// must be attached (--force=render), and without one it means every stage.
+// `--force` has an optional value, which the parser would look for in the next argument (the scene file): the
+// value must be attached (--force=render), and without one it means every stage.
 std::vector<std::string> prepare_arguments(int argc, char** argv) {
   std::vector<std::string> arguments;
   for (int i = argc - 1; i > 0; --i) {  // CLI11 wants them in reverse
@@ -65,16 +61,13 @@ void add_scene_options(CLI::App& command, SceneCommand& options) {
       ->check(CLI::PositiveNumber);
   std::vector<std::string> forceable = stage_names();
   forceable.emplace_back("all");
-  command.add_option("--force", options.force, "Make again what is there: --force for all, --force=STAGE for one stage")
+  command
+      .add_option("--force", options.force,
+                  "Make again what is there: --force for all, --force=STAGE for one stage")
       ->check(CLI::IsMember(forceable));
   command.add_flag("--dry-run", options.dry_run, "Only say what would be done");
-  command
-      .add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ProgressStyle>{{"auto", ProgressStyle::automatic},
-                                                                               {"bar", ProgressStyle::bar},
-                                                                               {"plain", ProgressStyle::plain},
-                                                                               {"json", ProgressStyle::json},
-                                                                               {"none", ProgressStyle::none}}));
+  command.add_option("--progress", options.progress, "How to show progress: auto, bar, plain, json or none")
+      ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}));
 }
 
 // Builds the parser, parses, and gives the command to run.
@@ -87,11 +80,14 @@ class CommandLine {
 
     CLI::App& whole = add("run", "Everything up to the video; stages that are done are reused");
     add_scene_options(whole, scene_);
-    whole.callback([this] { command_ = [this] { return run_stages_command(scene_, stages().back().name); }; });
+    whole.callback(
+        [this] { command_ = [this] { return run_stages_command(scene_, stages().back().name); }; });
     for (const Stage& stage : stages()) {
       CLI::App& command = add(stage.name, stage.doc);
       add_scene_options(command, scene_);
-      command.callback([this, name = stage.name] { command_ = [this, name] { return run_stages_command(scene_, name); }; });
+      command.callback([this, name = stage.name] {
+        command_ = [this, name] { return run_stages_command(scene_, name); };
+      });
     }
 
     CLI::App& check = add("check", "Read and check scene files, without doing anything");
@@ -103,7 +99,8 @@ class CommandLine {
 
     CLI::App& schema = add("schema", "Print what a scene file may hold");
     CLI::Option* json = schema.add_flag("--json", schema_json_, "As JSON Schema, for editors (default)");
-    schema.add_flag("--markdown", schema_markdown_, "As the reference page, docs/reference.md")->excludes(json);
+    schema.add_flag("--markdown", schema_markdown_, "As the reference page, docs/reference.md")
+        ->excludes(json);
     schema.callback([this] { command_ = [this] { return schema_command(schema_markdown_); }; });
 
     CLI::App& sheet = add("sheet", "Contact sheet (PNG) of the frames of a run");

@@ -46,6 +46,13 @@ std::vector<std::string> overrides_of(const SceneCommand& command) {
   return overrides;
 }
 
+ProgressStyle progress_style(const SceneCommand& command) {
+  if (command.progress == "json") return ProgressStyle::json;
+  if (command.progress == "none" || command.quiet) return ProgressStyle::none;
+  if (command.progress == "bar") return ProgressStyle::bar;
+  return command.progress == "plain" ? ProgressStyle::plain : ProgressStyle::automatic;
+}
+
 void print_plan(const Job& job, const RunOptions& options) {
   std::cout << "Output folder: " << job.out.string() << "\n";
   for (const StagePlan& stage : plan(job, options)) {
@@ -53,8 +60,8 @@ void print_plan(const Job& job, const RunOptions& options) {
     if (stage.missing.empty()) {
       std::cout << "nothing to do (" << stage.products.size() << " files are there)\n";
     } else {
-      std::cout << stage.missing.size() << " of " << stage.products.size() << " files to make: "
-                << stage.missing.front().file;
+      std::cout << stage.missing.size() << " of " << stage.products.size()
+                << " files to make: " << stage.missing.front().file;
       if (stage.missing.size() > 1) std::cout << " ... " << stage.missing.back().file;
       std::cout << "\n";
     }
@@ -72,9 +79,11 @@ int run_stages_command(const SceneCommand& command, const std::string& last_stag
     return exit_code(errors.front().kind());
   }
   Job job{*scene, command.out.empty() ? std::filesystem::path("out") / scene->name : command.out,
-          command.frames.empty() ? all_frames(scene->frame_count) : parse_frames(command.frames, scene->frame_count),
+          command.frames.empty() ? all_frames(scene->frame_count)
+                                 : parse_frames(command.frames, scene->frame_count),
           scene->frame_count};
-  // Pictures need the whole simulation (docs/decisions/0005-whole-simulation.md); `simulate` alone may stop earlier.
+  // Pictures need the whole simulation (docs/decisions/0003-whole-simulation.md); `simulate` alone may stop
+  // earlier.
   if (last_stage == "simulate") job.simulate_to = job.frames.back();
   const RunOptions options = {last_stage, command.force};
 
@@ -82,11 +91,10 @@ int run_stages_command(const SceneCommand& command, const std::string& last_stag
     print_plan(job, options);
     return 0;
   }
-  const bool json = command.progress == ProgressStyle::json;
-  const std::unique_ptr<Progress> progress =
-      make_progress(command.quiet && !json ? ProgressStyle::none : command.progress);
-  const std::vector<StageReport> reports = run(job, options, *progress);
-  if (last_stage == "encode" && !json && !command.quiet) {
+  const ProgressStyle style = progress_style(command);
+  const std::unique_ptr<Progress> progress = make_progress(style);
+  run(job, options, *progress);
+  if (last_stage == "encode" && style != ProgressStyle::json && !command.quiet) {
     std::cout << (job.out / (scene->name + ".mp4")).string() << "\n";
   }
   return 0;

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "common/progress.h"
-
 namespace vivify::pipeline {
 
 // run, mesh, weights, simulate, render, encode.
@@ -22,7 +20,7 @@ struct SceneCommand {
   std::string force;  // "", "all" or a stage
   bool dry_run = false;
   bool quiet = false;
-  ProgressStyle progress = ProgressStyle::automatic;
+  std::string progress = "auto";  // or bar, plain, json, none
 };
 int run_stages_command(const SceneCommand& command, const std::string& last_stage);
 

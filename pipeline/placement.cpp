@@ -24,7 +24,8 @@ TriangleMesh read_placed_mesh(const Scene& scene, const Value& item) {
     place(item, mesh.V);
     return mesh;
   } catch (const Error& error) {
-    throw Error(error.kind(), item["name"].as_string() + ": " + error.what(), error.hint(), item["mesh"].where());
+    throw Error(error.kind(), item["name"].as_string() + ": " + error.what(), error.hint(),
+                item["mesh"].where());
   }
 }
 

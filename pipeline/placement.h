@@ -12,16 +12,16 @@ namespace vivify::pipeline {
 // Name of the material of parts that the scene gives none: a grey.
 inline constexpr const char* kDefaultMaterial = "(default)";
 
-// Points (#V by 3) of an asset moved to the world: scale first, then heading, then position, as `item` (a body, collider
-// or prop) says.
+// Points (#V by 3) of an asset moved to the world: scale first, then heading, then position, as `item` (a
+// body, collider or prop) says.
 void place(const Value& item, Points& V);
 
-// The mesh of a body, collider or prop, in the world. Throws Error(geometry) for a mesh that cannot be read; the message
-// names the object.
+// The mesh of a body, collider or prop, in the world. Throws Error(geometry) for a mesh that cannot be read;
+// the message names the object.
 TriangleMesh read_placed_mesh(const Scene& scene, const Value& item);
 
-// Material of each part of a mesh, from `looks`; parts that are not named take `all`. A mesh without named parts has one
-// part. Throws Error(usage) when `looks` names a part that the mesh does not have.
+// Material of each part of a mesh, from `looks`; parts that are not named take `all`. A mesh without named
+// parts has one part. Throws Error(usage) when `looks` names a part that the mesh does not have.
 std::vector<std::string> part_materials(const Value& item, const std::vector<std::string>& part_names);
 
 }  // namespace vivify::pipeline

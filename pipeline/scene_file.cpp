@@ -22,9 +22,10 @@ namespace {
 constexpr double kMostFrames = 1'000'000;
 
 Schema looks_schema() {
-  return dictionary("Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
-                    "that is not named; without it such a part is grey.",
-                    string("Name of a material."));
+  return dictionary(
+      "Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
+      "that is not named; without it such a part is grey.",
+      string("Name of a material."));
 }
 
 // Keys of everything that is placed in the world from a mesh file.
@@ -43,12 +44,13 @@ Schema placed(std::string doc) {
 Schema rest_space_schema() {
   return variant("How the rest shape may change.", "type")
       .initially("cage")
-      .option("cage", meshing::cage_schema().field(
-                          "harmonic_unknowns",
-                          integer("Size of the problem that gives the harmonic coordinates; more is more accurate.")
-                              .at_least(100)
-                              .at_most(1'000'000)
-                              .initially(meshing::HarmonicSettings().unknowns)));
+      .option("cage",
+              meshing::cage_schema().field(
+                  "harmonic_unknowns",
+                  integer("Size of the problem that gives the harmonic coordinates; more is more accurate.")
+                      .at_least(100)
+                      .at_most(1'000'000)
+                      .initially(meshing::HarmonicSettings().unknowns)));
 }
 
 Schema body_schema() {
@@ -64,7 +66,8 @@ Schema body_schema() {
 
 Schema video_schema() {
   return object("The video made of the pictures.")
-      .field("crf", integer("Quality of H.264: 0 is lossless, 51 the worst.").at_least(0).at_most(51).initially(18))
+      .field("crf",
+             integer("Quality of H.264: 0 is lossless, 51 the worst.").at_least(0).at_most(51).initially(18))
       .field("exposure_stops", number("The light is multiplied by 2 to this power before the view transform.")
                                    .at_least(-20)
                                    .at_most(20)
@@ -73,7 +76,8 @@ Schema video_schema() {
 
 Schema collider_schema() {
   return placed("A fixed object that bodies touch.")
-      .field("friction", number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
+      .field("friction",
+             number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
       .field("visible", boolean("Whether it is drawn.").initially(true));
 }
 
@@ -91,11 +95,12 @@ Schema frames_schema() {
 // The camera of the renderer with the keys that this module adds.
 Schema following_camera_schema() {
   return render::camera_schema()
-      .field("follow_smooth_s", number("Width of the window that smooths the path of the followed body; 0 follows it "
-                                       "rigidly.")
-                                    .unit("s")
-                                    .at_least(0)
-                                    .initially(1.0))
+      .field("follow_smooth_s",
+             number("Width of the window that smooths the path of the followed body; 0 follows it "
+                    "rigidly.")
+                 .unit("s")
+                 .at_least(0)
+                 .initially(1.0))
       .field("follow_height", boolean("Whether the camera also follows up and down.").initially(false));
 }
 
@@ -125,7 +130,8 @@ void walk(const Schema& schema, const Value& value, const std::string& name, con
       if (value.kind() != Value::Kind::map) return;
       for (const auto& [key, item] : value.entries()) walk(*schema.item, item, below(key), visit);
       return;
-    default: return;
+    default:
+      return;
   }
 }
 
@@ -135,9 +141,10 @@ class SemanticCheck {
   SemanticCheck(const Scene& scene, std::vector<Error>& errors) : scene_(scene), errors_(errors) {}
 
   void run(const Schema& schema) {
-    walk(schema, scene_.settings, "", [&](const Schema& setting, const Value& value, const std::string& name) {
-      if (setting.kind == Schema::Kind::path && !value.is_null()) file_exists(value, name);
-    });
+    walk(schema, scene_.settings, "",
+         [&](const Schema& setting, const Value& value, const std::string& name) {
+           if (setting.kind == Schema::Kind::path && !value.is_null()) file_exists(value, name);
+         });
     names();
     looks();
     camera();
@@ -166,7 +173,8 @@ class SemanticCheck {
         return (c < 128 && std::isalnum(c) != 0) || c == '-' || c == '_';
       });
       if (!plain) {
-        fail(name, where + ".name = '" + text + "' must be made of letters, digits, '-' and '_'", "it names files");
+        fail(name, where + ".name = '" + text + "' must be made of letters, digits, '-' and '_'",
+             "it names files");
       }
       const auto [entry, fresh] = seen.emplace(text, where);
       if (!fresh && entry->second.substr(0, entry->second.find('[')) != where.substr(0, where.find('['))) {
@@ -181,7 +189,8 @@ class SemanticCheck {
     each_placed([&](const Value& item, const std::string& where) {
       for (const auto& [part, material] : item["looks"].entries()) {
         if (std::find(materials.begin(), materials.end(), material.as_string()) != materials.end()) continue;
-        fail(material, where + ".looks." + part + " = " + material.as_string() + ": there is no such material",
+        fail(material,
+             where + ".looks." + part + " = " + material.as_string() + ": there is no such material",
              suggestion(material.as_string(), materials));
       }
     });
@@ -252,7 +261,8 @@ std::optional<Scene> load_scene(const std::filesystem::path& file, const std::ve
                                 std::vector<Error>& errors) {
   const std::size_t errors_before = errors.size();
   ConfigNode root = parse_yaml(read_text_file(file), file.string(), errors);
-  if (errors.size() > errors_before) return std::nullopt;
+  const bool is_no_yaml = root.kind == ConfigNode::Kind::null && errors.size() > errors_before;
+  if (is_no_yaml) return std::nullopt;
   for (const std::string& assignment : overrides) {
     try {
       apply_override(root, assignment);
@@ -260,7 +270,6 @@ std::optional<Scene> load_scene(const std::filesystem::path& file, const std::ve
       errors.push_back(error);
     }
   }
-  if (errors.size() > errors_before) return std::nullopt;
 
   const Schema schema = scene_schema();
   Scene scene;

@@ -1,4 +1,5 @@
-// The scene file: its schema, put together from the schemas of the modules, and a scene that was read and checked.
+// The scene file: its schema, put together from the schemas of the modules, and a scene that was read and
+// checked.
 #pragma once
 
 #include <filesystem>
@@ -31,9 +32,10 @@ struct Scene {
   std::filesystem::path resolve_path(const std::string& path) const;
 };
 
-// Reads a scene file, applies `overrides` ("path.to.key=value", later ones win), fills in defaults and checks everything
-// that can be seen without reading other files, and that those files exist. Adds one Error(usage) per problem to `errors`
-// and gives a scene only when there is none. Throws Error(io) when the file cannot be read.
+// Reads a scene file, applies `overrides` ("path.to.key=value", later ones win), fills in defaults and checks
+// everything that can be seen without reading other files, and that those files exist. Adds one Error(usage)
+// per problem to `errors` and gives a scene only when there is none. Throws Error(io) when the file cannot be
+// read.
 std::optional<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                 std::vector<Error>& errors);
 

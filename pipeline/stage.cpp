@@ -5,7 +5,8 @@
 namespace vivify::pipeline {
 
 std::span<const Stage> stages() {
-  static const Stage table[] = {mesh_stage(), weights_stage(), simulate_stage(), render_stage(), encode_stage()};
+  static const Stage table[] = {mesh_stage(), weights_stage(), simulate_stage(), render_stage(),
+                                encode_stage()};
   return table;
 }
 

@@ -35,8 +35,8 @@ struct Stage {
   // The files of the stage for this job, in the order they are made. Reads settings and input files only,
   // never what a stage has made.
   std::vector<Product> (*products)(const Job& job);
-  // Makes `missing` (a part of the products, in order), commits each to the ledger, and advances `progress` by the
-  // units of each.
+  // Makes `missing` (a part of the products, in order), commits each to the ledger, and advances `progress`
+  // by the units of each.
   void (*make)(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress);
 };
 

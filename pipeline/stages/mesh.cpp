@@ -1,4 +1,5 @@
-// mesh: for each body the simulation mesh, made from its repaired surface, and the drawn surface embedded in it.
+// mesh: for each body the simulation mesh, made from its repaired surface, and the drawn surface embedded in
+// it.
 #include "common/error.h"
 #include "common/hdf5_file.h"
 #include "common/log.h"
@@ -37,8 +38,10 @@ Bytes make_body(const Scene& scene, const Value& body) {
   const TetMesh& mesh = result.mesh;
   const meshing::Embedding embedding = meshing::embed(mesh, surface.V);
   if (embedding.largest_weight() > kFarOutside) {
-    log_warning(name + ": parts of the drawn surface lie far outside the simulation mesh and will exaggerate its motion; "
-                       "raise tetrahedra.vertices");
+    log_warning(
+        name +
+        ": parts of the drawn surface lie far outside the simulation mesh and will exaggerate its motion; "
+        "raise tetrahedra.vertices");
   }
 
   Hdf5Writer file;
@@ -72,7 +75,8 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
       ledger.commit(product->file, product->key, make_body(job.scene, body));
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::geometry || !error.where().file.empty()) throw;
-      throw Error(error.kind(), body["name"].as_string() + ": " + error.what(), error.hint(), body["mesh"].where());
+      throw Error(error.kind(), body["name"].as_string() + ": " + error.what(), error.hint(),
+                  body["mesh"].where());
     }
     progress.advance(1, body["name"].as_string());
     ++product;

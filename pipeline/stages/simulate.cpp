@@ -66,7 +66,8 @@ sim::World make_world(const Job& job) {
     colliders.emplace_back(collider["name"].as_string(), read_placed_mesh(scene, collider),
                            collider["friction"].as_number());
   }
-  return sim::World(bodies, std::move(colliders), {scene.settings["gravity"].as_vector3(), scene.time_step()});
+  return sim::World(bodies, std::move(colliders),
+                    {scene.settings["gravity"].as_vector3(), scene.time_step()});
 }
 
 // Files of an earlier, different simulation would look like frames of this one.
@@ -113,8 +114,9 @@ class StepTable {
 };
 
 double mean(const std::vector<double>& values) {
-  return values.empty() ? 0
-                        : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return values.empty()
+             ? 0
+             : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
@@ -163,7 +165,8 @@ std::string summarize(const Job& job, const std::string& csv) {
 
 void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
   const auto is_missing = [&](const std::string& file) {
-    return std::any_of(missing.begin(), missing.end(), [&](const Product& product) { return product.file == file; });
+    return std::any_of(missing.begin(), missing.end(),
+                       [&](const Product& product) { return product.file == file; });
   };
   const std::string key = simulation_key(job);
   remove_stale_frames(job, ledger, key);
@@ -190,7 +193,8 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
           world->step();
         }
         for (int i = 0; i < world->body_count(); ++i) {
-          timing[world->body(i).model().name].sim_seconds += job.scene.time_step() * job.scene.steps_per_frame;
+          timing[world->body(i).model().name].sim_seconds +=
+              job.scene.time_step() * job.scene.steps_per_frame;
         }
       }
       Hdf5Writer file;
@@ -223,7 +227,9 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
 std::string simulation_key(const Job& job) {
   const Scene& scene = job.scene;
   ContentKey key("sim");
-  key.add("fps", scene.fps).add("steps_per_frame", scene.steps_per_frame).add("gravity", scene.settings["gravity"]);
+  key.add("fps", scene.fps)
+      .add("steps_per_frame", scene.steps_per_frame)
+      .add("gravity", scene.settings["gravity"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
     for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver"}) {
@@ -231,7 +237,8 @@ std::string simulation_key(const Job& job) {
     }
   }
   for (const Value& collider : scene.settings["colliders"].items()) {
-    for (const char* part : {"name", "position", "scale", "heading_deg", "friction"}) key.add(part, collider[part]);
+    for (const char* part : {"name", "position", "scale", "heading_deg", "friction"})
+      key.add(part, collider[part]);
     key.add_file(scene.resolve_path(collider["mesh"].as_string()));
   }
   return key.hex();

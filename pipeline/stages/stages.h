@@ -1,4 +1,5 @@
-// The stages, each defined in a file of its own in this folder, and what later stages need to know of earlier ones.
+// The stages, each defined in a file of its own in this folder, and what later stages need to know of earlier
+// ones.
 #pragma once
 
 #include "pipeline/stage.h"

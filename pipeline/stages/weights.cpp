@@ -42,7 +42,8 @@ Bytes make_body(const Job& job, const Value& body) {
   const TriangleMesh cage = make_body_cage(job, body, mesh);
   const int unknowns = static_cast<int>(body["rest_space"]["harmonic_unknowns"].as_integer());
   meshing::HarmonicReport report;
-  const Eigen::MatrixXd weights = meshing::harmonic_coordinates(cage, mesh.matrix("/X0"), {unknowns}, &report);
+  const Eigen::MatrixXd weights =
+      meshing::harmonic_coordinates(cage, mesh.matrix("/X0"), {unknowns}, &report);
   if (report.projected > 0) {
     log_info(body["name"].as_string() + ": " + std::to_string(report.projected) +
              " vertices had slightly negative cage weights (down to " + number_text(report.most_negative) +
@@ -81,7 +82,8 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
 std::string weights_key(const Job& job, const Value& body) {
   ContentKey key("meshing");
   key.add("mesh", mesh_key(job, body)).add("rest_space", body["rest_space"]);
-  if (body["rest_space"].has("file")) key.add_file(job.scene.resolve_path(body["rest_space"]["file"].as_string()));
+  if (body["rest_space"].has("file"))
+    key.add_file(job.scene.resolve_path(body["rest_space"]["file"].as_string()));
   return key.hex();
 }
 

@@ -71,7 +71,8 @@ TEST(Cli, WrongUsageIsTwo) {
 TEST(Cli, ForceDoesNotSwallowTheScene) {
   const TinyScene scene;
   for (const std::string force : {"--force", "--force=render"}) {
-    const Outcome outcome = vivify({"run", force, scene.file().string(), "-o", scene.out().string(), "--dry-run"});
+    const Outcome outcome =
+        vivify({"run", force, scene.file().string(), "-o", scene.out().string(), "--dry-run"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("render: 6 of 6 files to make"));
   }
@@ -83,7 +84,8 @@ TEST(Cli, DryRunMakesNothing) {
       vivify({"run", scene.file().string(), "-o", scene.out().string(), "--frames", "2-6x2", "--dry-run"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("mesh: 1 of 1 files to make: mesh/ball.h5"));
-  EXPECT_THAT(outcome.out, HasSubstr("render: 3 of 3 files to make: render/tiny.0002.exr ... render/tiny.0006.exr"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("render: 3 of 3 files to make: render/tiny.0002.exr ... render/tiny.0006.exr"));
   EXPECT_FALSE(fs::exists(scene.out()));
 }
 
@@ -92,7 +94,8 @@ TEST(Cli, LaterSettingsWin) {
   const auto resolved = [&](std::vector<std::string> options) {
     const fs::path out = scene.out("resolved");
     fs::remove_all(out);
-    std::vector<std::string> arguments = {"mesh", scene.file().string(), "-o", out.string(), "--progress=none"};
+    std::vector<std::string> arguments = {"mesh", scene.file().string(), "-o", out.string(),
+                                          "--progress=none"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Outcome outcome = vivify(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -101,7 +104,8 @@ TEST(Cli, LaterSettingsWin) {
   EXPECT_THAT(resolved({}), HasSubstr("spp: 1\n"));
   EXPECT_THAT(resolved({"--quality", "draft"}), HasSubstr("spp: 4\n"));
   EXPECT_THAT(resolved({"--set", "render.spp=16", "--quality", "draft"}), HasSubstr("spp: 16\n"));
-  EXPECT_THAT(resolved({"--spp", "2", "--set", "render.spp=16", "--set", "render.spp=32"}), HasSubstr("spp: 2\n"));
+  EXPECT_THAT(resolved({"--spp", "2", "--set", "render.spp=16", "--set", "render.spp=32"}),
+              HasSubstr("spp: 2\n"));
 }
 
 TEST(Check, AcceptsGoodScenes) {
@@ -147,19 +151,32 @@ TEST_P(WrongSceneTest, IsReportedWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, WrongSceneTest,
     testing::Values(
-        WrongScene{"missing_mesh", "mesh: ball.obj", "mesh: bull.obj",
-                   {":7:11: error: bodies[0].mesh = bull.obj: there is no file", "relative to the scene file"}},
+        WrongScene{
+            "missing_mesh",
+            "mesh: ball.obj",
+            "mesh: bull.obj",
+            {":7:11: error: bodies[0].mesh = bull.obj: there is no file", "relative to the scene file"}},
         WrongScene{"missing_collider", "plate.obj", "plaet.obj", {":15:", "colliders[0].mesh = plaet.obj"}},
         WrongScene{"missing_cage", "vertices: 8", "file: none.obj", {":10:", "none.obj", "there is no file"}},
-        WrongScene{"missing_texture", "{type: environment}", "{type: environment, file: sky.exr}",
+        WrongScene{"missing_texture",
+                   "{type: environment}",
+                   "{type: environment, file: sky.exr}",
                    {":18:", "lights[0].file = sky.exr"}},
-        WrongScene{"negative_density", "density: 100", "density: -3",
+        WrongScene{"negative_density",
+                   "density: 100",
+                   "density: -3",
                    {":11:", "error: bodies[0].model.density = -3 kg/m³ must be > 0"}},
-        WrongScene{"unknown_key", "mesh: ball.obj", "mesh: ball.obj\n    positoin: [0, 0, 0]",
+        WrongScene{"unknown_key",
+                   "mesh: ball.obj",
+                   "mesh: ball.obj\n    positoin: [0, 0, 0]",
                    {":8:5: error: ", "positoin", "position"}},
-        WrongScene{"unknown_look", "looks: {all: clay}", "looks: {all: caly}",
+        WrongScene{"unknown_look",
+                   "looks: {all: clay}",
+                   "looks: {all: caly}",
                    {":13:", "bodies[0].looks.all = caly: there is no such material", "did you mean 'clay'?"}},
-        WrongScene{"unknown_follow", "follow: ball", "follow: bal",
+        WrongScene{"unknown_follow",
+                   "follow: ball",
+                   "follow: bal",
                    {":16:", "camera.follow = bal: there is no such body", "did you mean 'ball'?"}},
         WrongScene{"same_name", "name: plate", "name: ball", {":15:", "is the name of bodies[0] already"}},
         WrongScene{"bad_name", "- name: ball", "- name: ../ball", {":6:", "letters, digits"}},
@@ -167,7 +184,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongScene{"other_version", "version: 1", "version: 2", {":1:10", "version"}},
         WrongScene{"duplicate_key", "follow: ball}", "follow: ball, target: [0, 0, 0]}", {":16:", "target"}},
         WrongScene{"octal", "fps: 24", "fps: 010", {":2:15", "010"}},
-        WrongScene{"merge_key", "model: {type: solid3d", "model: {<<: {type: solid3d}, type: solid3d", {":11:", "<<"}},
+        WrongScene{"merge_key",
+                   "model: {type: solid3d",
+                   "model: {<<: {type: solid3d}, type: solid3d",
+                   {":11:", "<<"}},
         WrongScene{"second_document", "bodies:", "---\nbodies:", {":5:"}},
         WrongScene{"self_reference", "lights:", "extra: &a [*a]\nlights:", {":17:"}},
         WrongScene{"syntax", "bodies:", "bodies: ]", {":5:"}},
@@ -210,7 +230,8 @@ TEST(SchemaCommand, JsonIsASchemaOfTheWholeScene) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json schema = nlohmann::json::parse(outcome.out);
   EXPECT_THAT(schema.at("$schema").get<std::string>(), HasSubstr("2020-12"));
-  for (const char* key : {"version", "frames", "bodies", "colliders", "props", "materials", "camera", "lights", "render"}) {
+  for (const char* key :
+       {"version", "frames", "bodies", "colliders", "props", "materials", "camera", "lights", "render"}) {
     EXPECT_TRUE(schema.at("properties").contains(key)) << key;
   }
 }

@@ -22,7 +22,8 @@ using testing_support::vivify;
 
 Outcome run(const TinyScene& scene, const std::string& command, const ProgramOptions& program = {},
             std::vector<std::string> options = {}) {
-  std::vector<std::string> arguments = {command, scene.file().string(), "-o", scene.out().string(), "--progress=none"};
+  std::vector<std::string> arguments = {command, scene.file().string(), "-o", scene.out().string(),
+                                        "--progress=none"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   return vivify(arguments, program);
 }
@@ -161,11 +162,13 @@ TEST_P(ShortWrite, LeavesNoPartOfAFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ShortWrite,
-                         testing::Values("scene.resolved.yaml", "mesh/ball.h5", "weights/ball.h5", "sim/frames/0003.h5",
-                                         "sim/steps.csv", "sim/summary.json", "render/tiny.0002.exr", "tiny.mp4"),
+                         testing::Values("scene.resolved.yaml", "mesh/ball.h5", "weights/ball.h5",
+                                         "sim/frames/0003.h5", "sim/steps.csv", "sim/summary.json",
+                                         "render/tiny.0002.exr", "tiny.mp4"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
-                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           for (char& c : name)
+                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
                            return name;
                          });
 

@@ -33,7 +33,8 @@ Outcome run_program(const std::vector<std::string>& command, const ProgramOption
     if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
     for (const auto& [name, value] : options.environment) ::setenv(name.c_str(), value.c_str(), 1);
     if (options.largest_file) {
-      const rlimit limit = {static_cast<rlim_t>(*options.largest_file), static_cast<rlim_t>(*options.largest_file)};
+      const rlimit limit = {static_cast<rlim_t>(*options.largest_file),
+                            static_cast<rlim_t>(*options.largest_file)};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
     ::execvp(arguments[0], arguments.data());

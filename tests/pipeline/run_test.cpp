@@ -29,7 +29,8 @@ using Files = std::map<std::string, std::string>;
 
 Outcome run(const TinyScene& scene, const fs::path& out, std::vector<std::string> options = {},
             const ProgramOptions& program = {}, const std::string& command = "run") {
-  std::vector<std::string> arguments = {command, scene.file().string(), "-o", out.string(), "--progress=none"};
+  std::vector<std::string> arguments = {command, scene.file().string(), "-o", out.string(),
+                                        "--progress=none"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   return vivify(arguments, program);
 }
@@ -84,9 +85,9 @@ TEST(Run, WritesWhatIsPromised) {
   const Outcome outcome = run(scene, out);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, (out / "tiny.mp4").string() + "\n");
-  for (const char* file : {"scene.resolved.yaml", "run.json", "timing.json", "mesh/ball.h5", "weights/ball.h5",
-                           "sim/frames/0001.h5", "sim/frames/0006.h5", "sim/steps.csv", "sim/summary.json",
-                           "render/tiny.0001.exr", "render/tiny.0006.exr", "tiny.mp4"}) {
+  for (const char* file : {"scene.resolved.yaml", "run.json", "timing.json", "mesh/ball.h5",
+                           "weights/ball.h5", "sim/frames/0001.h5", "sim/frames/0006.h5", "sim/steps.csv",
+                           "sim/summary.json", "render/tiny.0001.exr", "render/tiny.0006.exr", "tiny.mp4"}) {
     EXPECT_TRUE(fs::is_regular_file(out / file)) << file;
   }
   EXPECT_FALSE(fs::exists(out / "sim/frames/0007.h5"));
@@ -113,7 +114,8 @@ TEST(Run, StepsAndSummaryAgree) {
   std::istringstream csv(read_text_file(scene.out() / "sim/steps.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_TRUE(line.starts_with("step,t_s,body,method,sqp_iterations,linesearch_halvings,fallback,residual_rel,"));
+  EXPECT_TRUE(
+      line.starts_with("step,t_s,body,method,sqp_iterations,linesearch_halvings,fallback,residual_rel,"));
   int rows = 0;
   while (std::getline(csv, line)) {
     ++rows;
@@ -212,7 +214,8 @@ TEST(Run, ThreadsDoNotChangeABit) {
   const TinyScene scene;
   ASSERT_EQ(run(scene, scene.out("one"), {"-j", "1"}).code, 0);
   ASSERT_EQ(run(scene, scene.out("two"), {"-j", "2"}).code, 0);
-  EXPECT_THAT(differences(promised_files(scene.out("one")), promised_files(scene.out("two"))), testing::IsEmpty());
+  EXPECT_THAT(differences(promised_files(scene.out("one")), promised_files(scene.out("two"))),
+              testing::IsEmpty());
 }
 
 TEST(Run, OneFrameAloneIsTheSameAsInTheRange) {
@@ -227,14 +230,17 @@ TEST(Run, OneFrameAloneIsTheSameAsInTheRange) {
 TEST(Run, TurningTheHeadingTurnsTheMotion) {
   const TinyScene scene;
   ASSERT_EQ(run(scene, scene.out("x"), {}, {}, "simulate").code, 0);
-  ASSERT_EQ(run(scene, scene.out("z"), {"--set", "bodies.ball.controller.heading_deg=0"}, {}, "simulate").code, 0);
+  ASSERT_EQ(
+      run(scene, scene.out("z"), {"--set", "bodies.ball.controller.heading_deg=0"}, {}, "simulate").code, 0);
   EXPECT_EQ(statuses(scene.out("z")).at("simulate"), "ran");
-  EXPECT_NE(read_text_file(scene.out("x") / "sim/steps.csv"), read_text_file(scene.out("z") / "sim/steps.csv"));
+  EXPECT_NE(read_text_file(scene.out("x") / "sim/steps.csv"),
+            read_text_file(scene.out("z") / "sim/steps.csv"));
 }
 
 TEST(Run, JsonProgressIsJsonAndEndsWhole) {
   const TinyScene scene;
-  const Outcome outcome = vivify({"run", scene.file().string(), "-o", scene.out().string(), "--progress=json"});
+  const Outcome outcome =
+      vivify({"run", scene.file().string(), "-o", scene.out().string(), "--progress=json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   std::istringstream lines(outcome.out);
   std::vector<std::string> finished;
@@ -270,7 +276,8 @@ TEST(Run, SheetAndDiffWorkOnItsPictures) {
   EXPECT_EQ(vivify({"sheet", scene.out("a").string()}).code, 0);
   EXPECT_GT(fs::file_size(scene.out("a") / "sheet.png"), 100u);
   const auto diff = [&](const char* a, const char* b) {
-    return vivify({"diff", "--exact", (scene.out(a) / "render").string(), (scene.out(b) / "render").string()}).code;
+    return vivify({"diff", "--exact", (scene.out(a) / "render").string(), (scene.out(b) / "render").string()})
+        .code;
   };
   EXPECT_EQ(diff("a", "a"), 0);
   EXPECT_EQ(diff("a", "b"), 1);
@@ -303,18 +310,20 @@ TEST_P(InterruptedRun, EndsWithTheSameBytes) {
   const Outcome resumed = run(scene, scene.out());
   ASSERT_EQ(resumed.code, 0) << resumed.err;
   ASSERT_EQ(run(scene, scene.out("straight")).code, 0);
-  EXPECT_THAT(differences(promised_files(scene.out()), promised_files(scene.out("straight"))), testing::IsEmpty());
+  EXPECT_THAT(differences(promised_files(scene.out()), promised_files(scene.out("straight"))),
+              testing::IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Stages, InterruptedRun,
-                         testing::Values(Interruption{"killed_in_weights", "mesh/ball.h5", SIGKILL, 128 + SIGKILL},
-                                         Interruption{"killed_in_simulate", "sim/frames/0004.h5", SIGKILL, 128 + SIGKILL},
-                                         Interruption{"killed_in_render", "render/tiny.0003.exr", SIGKILL, 128 + SIGKILL},
-                                         Interruption{"stopped_in_simulate", "sim/frames/0004.h5", SIGTERM, 75},
-                                         Interruption{"stopped_in_render", "render/tiny.0003.exr", SIGTERM, 75},
-                                         Interruption{"time_limit_in_render", "render/tiny.0003.exr", SIGUSR1, 75},
-                                         Interruption{"ctrl_c_in_render", "render/tiny.0003.exr", SIGINT, 130}),
-                         [](const auto& parameter) { return parameter.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Stages, InterruptedRun,
+    testing::Values(Interruption{"killed_in_weights", "mesh/ball.h5", SIGKILL, 128 + SIGKILL},
+                    Interruption{"killed_in_simulate", "sim/frames/0004.h5", SIGKILL, 128 + SIGKILL},
+                    Interruption{"killed_in_render", "render/tiny.0003.exr", SIGKILL, 128 + SIGKILL},
+                    Interruption{"stopped_in_simulate", "sim/frames/0004.h5", SIGTERM, 75},
+                    Interruption{"stopped_in_render", "render/tiny.0003.exr", SIGTERM, 75},
+                    Interruption{"time_limit_in_render", "render/tiny.0003.exr", SIGUSR1, 75},
+                    Interruption{"ctrl_c_in_render", "render/tiny.0003.exr", SIGINT, 130}),
+    [](const auto& parameter) { return parameter.param.name; });
 
 }  // namespace
 }  // namespace vivify::pipeline

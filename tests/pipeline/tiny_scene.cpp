@@ -50,7 +50,8 @@ TriangleMesh box_mesh(const Eigen::Vector3d& half) {
         ((i & 4) != 0 ? half.z() : -half.z());
   }
   mesh.F.resize(12, 3);
-  mesh.F << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5;
+  mesh.F << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5,
+      3, 7, 5;
   return mesh;
 }
 
@@ -65,7 +66,8 @@ TriangleMesh ball_mesh(double radius, int refinements) {
     Triangles finer(4 * mesh.F.rows(), 3);
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
       const int a = mesh.F(f, 0), b = mesh.F(f, 1), c = mesh.F(f, 2);
-      const int ab = midpoint(mesh, known, a, b), bc = midpoint(mesh, known, b, c), ca = midpoint(mesh, known, c, a);
+      const int ab = midpoint(mesh, known, a, b), bc = midpoint(mesh, known, b, c),
+                ca = midpoint(mesh, known, c, a);
       finer.row(4 * f) << a, ab, ca;
       finer.row(4 * f + 1) << ab, b, bc;
       finer.row(4 * f + 2) << ca, bc, c;
@@ -83,7 +85,8 @@ std::string obj_text(const TriangleMesh& mesh) {
     text += "v " + number_text(v[0]) + " " + number_text(v[1]) + " " + number_text(v[2]) + "\n";
   }
   for (const auto& f : mesh.F.rowwise()) {
-    text += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + " " + std::to_string(f[2] + 1) + "\n";
+    text += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + " " +
+            std::to_string(f[2] + 1) + "\n";
   }
   return text;
 }
