@@ -28,7 +28,9 @@ struct ConfigNode::Entry {
 };
 
 // Parses YAML text. Adds one Error(usage) per problem to `errors`, each with file, line and column: syntax errors,
-// duplicate keys, a second document, self-referencing anchors, merge keys (<<), octal numbers such as 010.
+// duplicate keys, a second document, self-referencing anchors, merge keys (<<), octal numbers such as 010, YAML tags,
+// bombs. The tree is still worth checking afterwards, so that all errors come in one go; when the text is no YAML at all
+// it is a null without a place, which resolve() passes over.
 ConfigNode parse_yaml(const std::string& text, const std::string& file_name, std::vector<Error>& errors);
 
 // Applies `path.to.key=value` (lists by index: bodies.0.material.density=900 or bodies[0].…; a list of named maps also

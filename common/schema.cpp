@@ -495,7 +495,8 @@ class Resolver {
 
 Value resolve(const Schema& schema, const ConfigNode& node, std::vector<Error>& errors) {
   if (node.kind != ConfigNode::Kind::null) return Resolver(errors).resolve(schema, node, "");
-  if (!errors.empty()) return {};  // the file could not be parsed, which has been reported
+  const bool unreadable = node.where.line == 0 && !errors.empty();
+  if (unreadable) return {};  // parse_yaml has said why
   ConfigNode empty;
   empty.kind = ConfigNode::Kind::map;
   empty.where = node.where;
