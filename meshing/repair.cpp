@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "meshing/byte_stream.h"
+#include "meshing/main_body.h"
 #include "meshing/repair_steps.h"
 
 namespace vivify::meshing {
@@ -50,15 +51,18 @@ RepairedSurface run(Bytes (*steps)(const TriangleMesh&), const TriangleMesh& inp
 
 RepairedSurface repair_surface(const TriangleMesh& input, const ProcessLimits& limits) {
   check_input(input);
+  std::vector<std::string> notes;
+  const TriangleMesh body = main_body(input, notes);
+  RepairedSurface surface;
   try {
-    return run(repair_step_by_step, input, limits);
+    surface = run(repair_step_by_step, body, limits);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::geometry) throw;
-    RepairedSurface surface = run(wrap_as_it_is, input, limits);
-    surface.notes.insert(surface.notes.begin(),
-                         std::string("the step-by-step repair failed: ") + error.what());
-    return surface;
+    surface = run(wrap_as_it_is, body, limits);
+    notes.push_back(std::string("the step-by-step repair failed: ") + error.what());
   }
+  surface.notes.insert(surface.notes.begin(), notes.begin(), notes.end());
+  return surface;
 }
 
 }  // namespace vivify::meshing

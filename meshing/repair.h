@@ -16,7 +16,7 @@ struct RepairedSurface {
   std::vector<std::string> notes;  // what was done, in plain words with counts
 };
 
-// Joins duplicate vertices, drops degenerate and duplicate triangles, orients and stitches, and fills holes;
+// Leaves out small decoration (meshing/main_body.h), joins duplicate vertices, drops degenerate and duplicate triangles, orients and stitches, and fills holes;
 // where the result still is open or intersects itself, wraps it. Runs in a child process with `limits`.
 // Throws Error(geometry) when the input has no triangle of positive area or a vertex that is not finite.
 RepairedSurface repair_surface(const TriangleMesh& input, const ProcessLimits& limits = {120, 6000});

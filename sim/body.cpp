@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kMaxContactPasses = 3;     // solves of one step while contact planes still move
 constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
+constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of force even where there is none
 constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
 
 Eigen::VectorXd flatten(const Points& V) { return Eigen::Map<const Eigen::VectorXd>(V.data(), V.size()); }
@@ -40,8 +41,7 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings)
   body.mass = lumped_mass(body.mesh, input.model["density"].as_number());
   const Box box = bounding_box(body.mesh.V);
   body.height = box.max.y() - box.min.y();
-  const double gravity = std::max(settings.gravity.norm(), 1e-3);
-  body.weight = body.mass.sum() * gravity;
+  body.weight = body.mass.sum() * std::max(settings.gravity.norm(), kLeastGravity);
 
   body.rest = make_cage_space(body.mesh.V, input.cage_weights);
   body.elastic = build_model(body.mesh, body.rest.layout, input.model);
@@ -215,8 +215,8 @@ void Body::save(Hdf5Writer& file, const std::string& group) const {
   RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 6);
   for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
     const ContactMemory& memory = contact_memory_[i];
-    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.collider,
-        memory.normal_force, memory.anchor.transpose();
+    contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.collider, memory.normal_force,
+        memory.anchor.transpose();
   }
   file.put(group + "/restart/contact", contact);
   file.put(group + "/restart/controller", controller_->state());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "sim/control/rigid_motion.h"
 
@@ -13,9 +14,15 @@ namespace {
 constexpr double kHeightFrequency = 6;   // ω of the height goal, 1/s (k_p = ω k_d)
 constexpr double kUprightFrequency = 8;  // wanted turning rate per radian of tilt, 1/s
 constexpr double kSpinWeight = 10;       // of the spin goals, relative to the inertia of the body
-constexpr double kLandingWeight = 0.3;   // a landing is caught softly
+constexpr double kSoftWeight = 0.3;      // of landing and crouching, relative to the thrust
 constexpr double kTouchLoad = 0.05;      // share of the weight that counts as standing on the ground
-constexpr double kLongestFlight = 3;     // s; a body that never lands again starts over
+constexpr double kFall = 0.6;            // largest downward acceleration of a crouch, in g
+constexpr double kLongestCrouch = 2;     // of the asked duration
+constexpr double kLearning = 0.5;  // share of a missed take-off velocity that the next thrust asks for on top
+constexpr double kLargestLearnt = 0.5;  // of the wanted take-off velocity
+constexpr double kLineGain = 0.5;       // share of a sideways offset that one flight takes back
+constexpr double kLargestSteer = 0.3;   // sideways take-off speed, of the upward one
+constexpr double kLongestFlight = 3;    // s; a body that never lands again starts over
 
 enum Phase { kCrouch, kThrust, kFlight, kLand };
 constexpr const char* kPhaseNames[] = {"crouch", "thrust", "flight", "land"};
@@ -43,48 +50,45 @@ class HopController final : public Controller {
     // The body travels in flight, and with half the speed while it pushes off.
     const double cycle = crouch_s_ + 0.5 * thrust_s_ + flight + land_s_;
     speed_ = settings["pace"].as_number() * cycle / (flight + 0.25 * thrust_s_);
-    rest_height_ = centre_of_mass(body.mass, body.rest).y();
+    rest_centre_ = centre_of_mass(body.mass, body.rest);
   }
 
   std::vector<Goal> goals(const Observation& now) override {
-    const Eigen::Vector3d centre = centre_of_mass(body_.mass, now.x);
     if (!started_) {
       started_ = true;
-      enter(kCrouch, centre);
+      enter(kCrouch, now);
     }
     const bool standing = now.load > kTouchLoad * body_.mass.sum() * body_.gravity;
-    advance_phase(standing, centre);
+    advance_phase(standing, now);
     time_ += body_.h;
 
     std::vector<Goal> goals;
-    const double kd = std::sqrt(weight_ * body_.mass.sum());
+    const double kd = std::sqrt(weight_ * body_.mass.sum()), soft = std::sqrt(kSoftWeight) * kd;
     switch (phase_) {
       case kCrouch: {
-        const double t = time_ / crouch_s_;
-        const double ramp = smooth_step(t), rate = t < 1 ? 6 * t * (1 - t) / crouch_s_ : 0;
-        const double target = start_.y() + (ground_height_ - crouch_depth_ - start_.y()) * ramp;
-        add_centre(goals, Eigen::Vector3d::UnitY(), kd, kHeightFrequency, target,
-                   (ground_height_ - crouch_depth_ - start_.y()) * rate);
-        hold_place(goals, kd);
-        add_upright(goals, now.x, 1);
+        const auto [height, rate] = crouch_path();
+        add_centre(goals, up(), soft, kHeightFrequency, height, rate);
+        add_centre(goals, forward_, soft, 0, 0, 0);
+        add_centre(goals, sideways(), soft, 0, 0, 0);
+        add_upright(goals, now.x, kSoftWeight);
         break;
       }
       case kThrust: {
         const double ramp = smooth_step(time_ / (0.5 * thrust_s_));
-        add_centre(goals, Eigen::Vector3d::UnitY(), kd, 0, 0, ramp * take_off_);
-        add_centre(goals, forward_, kd, 0, 0, ramp * speed_);
-        add_centre(goals, sideways(), kd, 0, 0, 0);
+        const Eigen::Vector3d asked = ramp * (wanted_take_off() + learnt_);
+        for (const Eigen::Vector3d& direction : {up(), forward_, sideways()}) {
+          add_centre(goals, direction, kd, 0, 0, direction.dot(asked));
+        }
         add_upright(goals, now.x, 1);
         break;
       }
       case kFlight:
         break;
       case kLand: {
-        const double soft = std::sqrt(kLandingWeight) * kd;
-        add_centre(goals, Eigen::Vector3d::UnitY(), soft, kHeightFrequency, ground_height_, 0);
+        add_centre(goals, up(), soft, kHeightFrequency, ground_height_, 0);
         add_centre(goals, forward_, soft, 0, 0, 0);
         add_centre(goals, sideways(), soft, 0, 0, 0);
-        add_upright(goals, now.x, kLandingWeight);
+        add_upright(goals, now.x, kSoftWeight);
         break;
       }
     }
@@ -94,8 +98,8 @@ class HopController final : public Controller {
   std::string phase() const override { return kPhaseNames[phase_]; }
 
   Eigen::VectorXd state() const override {
-    Eigen::VectorXd state(7);
-    state << started_, phase_, time_, start_.x(), start_.y(), start_.z(), ground_height_;
+    Eigen::VectorXd state(11);
+    state << started_, phase_, time_, start_, start_rate_, ground_height_, learnt_;
     return state;
   }
 
@@ -104,36 +108,79 @@ class HopController final : public Controller {
     phase_ = static_cast<Phase>(static_cast<int>(state[1]));
     time_ = state[2];
     start_ = state.segment<3>(3);
-    ground_height_ = state[6];
+    start_rate_ = state[6];
+    ground_height_ = state[7];
+    learnt_ = state.segment<3>(8);
   }
 
  private:
-  Eigen::Vector3d sideways() const { return Eigen::Vector3d::UnitY().cross(forward_); }
+  static Eigen::Vector3d up() { return Eigen::Vector3d::UnitY(); }
+  Eigen::Vector3d sideways() const { return up().cross(forward_); }
 
-  void enter(Phase phase, const Eigen::Vector3d& centre) {
-    phase_ = phase;
-    time_ = 0;
-    start_ = centre;
-    if (phase == kCrouch && ground_height_ == 0) ground_height_ = rest_height_;
+  // Velocity of the centre of mass at take-off: the asked height and pace, and back to the line of travel.
+  Eigen::Vector3d wanted_take_off() const {
+    const double flight = 2 * take_off_ / body_.gravity;
+    const double offset = sideways().dot(start_ - rest_centre_);
+    const double back =
+        std::clamp(-kLineGain * offset / flight, -kLargestSteer * take_off_, kLargestSteer * take_off_);
+    return take_off_ * up() + speed_ * forward_ + back * sideways();
   }
 
-  void advance_phase(bool standing, const Eigen::Vector3d& centre) {
+  // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
+  // take-off fell short.
+  void learn(const Observation& now) {
+    const Eigen::Vector3d missed = wanted_take_off() - centre_of_mass(body_.mass, now.v);
+    learnt_ += kLearning * missed;
+    const double largest = kLargestLearnt * wanted_take_off().norm();
+    if (learnt_.norm() > largest) learnt_ *= largest / learnt_.norm();
+  }
+
+  // Wanted height of the centre of mass and its rate: the cubic from where the crouch began, with the
+  // velocity it had, to rest at the bottom.
+  std::pair<double, double> crouch_path() const {
+    const double duration = crouch_duration(), t = std::min(1.0, time_ / duration);
+    const double bottom = ground_height_ - crouch_depth_;
+    const double a = start_.y() - bottom, b = start_rate_ * duration;
+    const double height = bottom + a * (1 - t * t * (3 - 2 * t)) + b * t * (1 - t) * (1 - t);
+    const double rate = (-6 * a * t * (1 - t) + b * (1 - t) * (1 - 3 * t)) / duration;
+    return {height, rate};
+  }
+
+  // At least the asked duration, and long enough that the path never falls so fast that the feet would lift:
+  // its acceleration at the start, −(6 a/T² + 4 v/T), stays above −kFall g.
+  double crouch_duration() const {
+    const double a = std::max(0.0, start_.y() - ground_height_ + crouch_depth_), v = start_rate_;
+    const double fall = kFall * body_.gravity;
+    const double slowest = (2 * v + std::sqrt(4 * v * v + 6 * a * fall)) / fall;
+    return std::max(crouch_s_, std::min(slowest, kLongestCrouch * crouch_s_));
+  }
+
+  void enter(Phase phase, const Observation& now) {
+    phase_ = phase;
+    time_ = 0;
+    start_ = centre_of_mass(body_.mass, now.x);
+    start_rate_ = centre_of_mass(body_.mass, now.v).y();
+    if (phase == kCrouch && ground_height_ == 0) ground_height_ = rest_centre_.y();
+  }
+
+  void advance_phase(bool standing, const Observation& now) {
     switch (phase_) {
       case kCrouch:
-        if (time_ >= crouch_s_) enter(kThrust, centre);
+        if (time_ >= crouch_duration()) enter(kThrust, now);
         break;
       case kThrust:
         if (!standing && time_ > body_.h) {
-          enter(kFlight, centre);
+          learn(now);
+          enter(kFlight, now);
         } else if (time_ >= 2 * thrust_s_) {
-          enter(kLand, centre);  // did not leave the ground: try again
+          enter(kLand, now);  // did not leave the ground: try again
         }
         break;
       case kFlight:
-        if (standing || time_ >= kLongestFlight) enter(kLand, centre);
+        if (standing || time_ >= kLongestFlight) enter(kLand, now);
         break;
       case kLand:
-        if (time_ >= land_s_ && standing) enter(kCrouch, centre);
+        if (time_ >= land_s_ && standing) enter(kCrouch, now);
         break;
     }
   }
@@ -141,11 +188,6 @@ class HopController final : public Controller {
   void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency,
                   double sx, double sv) const {
     goals.push_back({centre_of_mass_weights(body_.mass, direction), frequency * kd, kd, sx, sv});
-  }
-
-  void hold_place(std::vector<Goal>& goals, double kd) const {
-    add_centre(goals, forward_, kd, 0, 0, 0);
-    add_centre(goals, sideways(), kd, 0, 0, 0);
   }
 
   // Turns the body upright, and its face towards the heading when asked.
@@ -168,13 +210,16 @@ class HopController final : public Controller {
   double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_;
   Eigen::Vector3d forward_;
   bool face_heading_ = false;
-  double heading_ = 0, take_off_ = 0, speed_ = 0, rest_height_ = 0;
+  double heading_ = 0, take_off_ = 0, speed_ = 0;
+  Eigen::Vector3d rest_centre_;
 
   bool started_ = false;
   Phase phase_ = kCrouch;
-  double time_ = 0;                                  // since the phase began, s
-  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  // centre of mass when the phase began, m
-  double ground_height_ = 0;                         // of the centre of mass when standing, m
+  double time_ = 0;                                   // since the phase began, s
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();   // centre of mass when the phase began, m
+  double start_rate_ = 0;                             // its vertical velocity then, m/s
+  Eigen::Vector3d learnt_ = Eigen::Vector3d::Zero();  // added to the take-off velocity, m/s
+  double ground_height_ = 0;                          // of the centre of mass when standing, m
 };
 
 }  // namespace
@@ -191,7 +236,7 @@ Schema hop_controller_schema() {
                                  .at_least(0)
                                  .at_most(0.5)
                                  .initially(0.12))
-      .field("crouch_s", number("Duration of the crouch.").unit("s").above(0).initially(0.25))
+      .field("crouch_s", number("Duration of the crouch.").unit("s").above(0).initially(0.35))
       .field("thrust_s", number("Time to push off; the thrust ends when the body leaves the ground.")
                              .unit("s")
                              .above(0)
