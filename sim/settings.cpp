@@ -23,7 +23,7 @@ Schema contact_schema() {
              number("Thickness of the contact layer as a share of the body's height: softer when larger.")
                  .above(0)
                  .at_most(0.1)
-                 .initially(0.003));
+                 .initially(0.0015));
 }
 
 Schema solver_schema() {

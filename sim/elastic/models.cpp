@@ -15,15 +15,15 @@ Schema solid3d_schema() {
              "Solid3D).")
       .field("density", number("Mass per volume.").unit("kg/m³").above(0).initially(300))
       .field("stiffness",
-             number("Edge stiffness k_l. A character of height L is lively at about 30 · density · 9.81 · L.")
+             number("Edge stiffness k_l. A character of height L is lively at about 45 · density · 9.81 · L.")
                  .unit("Pa")
                  .above(0)
-                 .initially(88000))
+                 .initially(130000))
       .field("volume_stiffness",
              number("Volume stiffness k_v; below 0.087 k_l single elements can stay inverted.")
                  .unit("Pa")
                  .at_least(0)
-                 .initially(88000));
+                 .initially(200000));
 }
 
 // W = Σ_e Σ_j (k_l/12) (l² − L²)² V̄/L̄⁴ + ½ k_v (v − V)² / V̄.
