@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "common/error.h"
+#include "render/image_compare.h"
 #include "render/image_io.h"
 
 namespace vivify::test {
@@ -30,11 +31,6 @@ std::string processor_family() {
   return name.data();
 }
 
-render::Image read_bytes(const Bytes& exr, const fs::path& file) {
-  write_file_atomic(file, exr);
-  return render::read_image(file);
-}
-
 fs::path results() {
   const fs::path path = fs::temp_directory_path() / "vivify_goldens";
   make_folder(path);
@@ -47,12 +43,6 @@ bool on_reference_processor() {
   return read_text_file(folder() / "processor.txt") == processor_family() + "\n";
 }
 
-render::ImageComparison compare_with_golden(const std::string& name, const Bytes& exr) {
-  return render::compare_images(render::read_image(folder() / (name + ".exr")),
-                                read_bytes(exr, results() / (name + ".exr")),
-                                {.exact = on_reference_processor()});
-}
-
 void expect_golden(const std::string& name, const Bytes& exr) {
   const char* update = std::getenv("VIVIFY_UPDATE_GOLDENS");
   if (update != nullptr && std::string(update) == "1") {
@@ -61,7 +51,11 @@ void expect_golden(const std::string& name, const Bytes& exr) {
     ADD_FAILURE() << "golden " << name << " was replaced; look at it, then run without VIVIFY_UPDATE_GOLDENS";
     return;
   }
-  const render::ImageComparison comparison = compare_with_golden(name, exr);
+  const fs::path picture = results() / (name + ".exr");
+  write_file_atomic(picture, exr);
+  const render::ImageComparison comparison =
+      render::compare_images(render::read_image(folder() / (name + ".exr")), render::read_image(picture),
+                             {.exact = on_reference_processor()});
   if (comparison.same) return;
   std::string text = comparison.reason;
   for (const render::PlaneComparison& plane : comparison.planes) {
@@ -73,7 +67,7 @@ void expect_golden(const std::string& name, const Bytes& exr) {
   }
   ADD_FAILURE() << "the picture is not the golden " << name
                 << (on_reference_processor() ? " (exact comparison): " : " (tolerant comparison): ") << text
-                << "\nsee " << (results() / (name + ".exr")).string() << " and .png; docs/image_tests.md";
+                << "\nsee " << picture.string() << " and .png; docs/image_tests.md";
 }
 
 }  // namespace vivify::test

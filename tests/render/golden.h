@@ -4,20 +4,16 @@
 #include <string>
 
 #include "common/file.h"
-#include "render/image_compare.h"
 
 namespace vivify::test {
 
 // Whether this processor is of the family that the goldens were made on: there every bit must agree.
 bool on_reference_processor();
 
-// Compares an EXR file with the golden NAME.exr: exactly on the reference processor, with the tolerance of
-// `vivify diff` elsewhere.
-render::ImageComparison compare_with_golden(const std::string& name, const Bytes& exr);
-
-// Fails the test when the picture is not the golden; the picture and a map of the differences are then left
-// in the folder that the failure names. With VIVIFY_UPDATE_GOLDENS=1 in the environment the golden is
-// replaced, and the test fails to say so. A golden that does not exist is a failure.
+// Fails the test when the EXR file is not the golden NAME.exr: exactly on the reference processor, within the
+// tolerance of `vivify diff` elsewhere. The picture and a map of the differences are then left in the folder
+// that the failure names. With VIVIFY_UPDATE_GOLDENS=1 in the environment the golden is replaced, and the
+// test fails to say so. A golden that does not exist is a failure.
 void expect_golden(const std::string& name, const Bytes& exr);
 
 }  // namespace vivify::test
