@@ -25,8 +25,7 @@ namespace {
 constexpr double kCoreAlpha = 1.0 / 40;  // the tight wrap that the cage must not touch
 constexpr double kCoreOffset = 1.0 / 400;
 constexpr double kStartOffset = 1.0 / 100;  // between the start of the collapse and the tight wrap
-// What is narrower than this is filled before the collapse; wider and wider until few enough vertices are
-// reached.
+// What is narrower than this is filled before the collapse: handles and gaps cost vertices.
 constexpr std::array<double, 5> kStartAlphas = {1.0 / 25, 1.0 / 12, 1.0 / 6, 1.0 / 3, 1};
 
 TriangleMesh join(const TriangleMesh& a, const TriangleMesh& b) {
@@ -57,8 +56,7 @@ TriangleMesh cubes(const Points& points, double radius) {
   return mesh;
 }
 
-// The cage of the wanted number of vertices from the finest wrap that can be collapsed so far; else the
-// smallest one.
+// The smallest of the cages that come nearest to the wanted number of vertices, from finer and coarser wraps.
 TriangleMesh wrap_and_collapse(const TriangleMesh& enclosed, double diagonal, int vertices) {
   const TriangleMesh core = wrap_surface(enclosed, kCoreAlpha * diagonal, kCoreOffset * diagonal);
   TriangleMesh best;
