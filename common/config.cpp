@@ -47,6 +47,13 @@ class Places {
            std::string_view(text_).substr(offset(mark)).starts_with(word);
   }
 
+  bool line_has_leading_tab(const YAML::Mark& mark) const {
+    const auto line = static_cast<std::size_t>(std::max(mark.line, 0));
+    if (mark.is_null() || line >= line_starts_.size()) return false;
+    const std::size_t first = text_.find_first_not_of(' ', line_starts_[line]);
+    return first != std::string::npos && text_[first] == '\t';
+  }
+
   // Whether a quoted text that begins here ends before the file does; yaml-cpp does not insist.
   bool quote_ends(const YAML::Mark& mark) const {
     const bool is_double = has_at(mark, "\"");
@@ -208,7 +215,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void start(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, ConfigNode::Kind kind) {
     check_tag(mark, tag);
     if (wants_key()) {
-      problem(mark, "a key must be a word, not a list or map", "");
+      problem(mark, "a key must be a word, not a list or map", "is a bracket left open?");
       throw GaveUp();
     }
     ++nodes_;
@@ -292,6 +299,30 @@ class TreeBuilder final : public YAML::EventHandler {
   int documents_ = 0;
   long nodes_ = 0;
 };
+
+// What the parser found, in words for people who do not know the grammar of YAML.
+Error syntax_error(const YAML::Exception& error, const Places& places) {
+  const Location where = places.at(error.mark);
+  const auto make = [&](const std::string& message, const std::string& hint) {
+    return Error(ErrorKind::usage, message, hint, where);
+  };
+  const std::string& what = error.msg;
+  if (places.line_has_leading_tab(error.mark))
+    return make("a tab stands where YAML wants spaces", "indent with spaces");
+  if (what == YAML::ErrorMsg::END_OF_SEQ_FLOW) return make("a '[' before this place is not closed", "");
+  if (what == YAML::ErrorMsg::END_OF_MAP_FLOW) return make("a '{' before this place is not closed", "");
+  if (what == YAML::ErrorMsg::FLOW_END) return make("this bracket closes nothing", "");
+  if (what == YAML::ErrorMsg::MAP_VALUE) {
+    return make("a ':' is not expected here",
+                "check the indentation, and put text that holds ': ' in quotes");
+  }
+  if (what == YAML::ErrorMsg::END_OF_MAP || what == YAML::ErrorMsg::END_OF_SEQ) {
+    return make("this line does not fit the ones before", "check the indentation");
+  }
+  if (what == YAML::ErrorMsg::UNKNOWN_TOKEN)
+    return make("a text cannot begin with this character", "put it in quotes");
+  return make(what, "");
+}
 
 // One step of a path such as bodies[0].material or bodies.cup.material.
 std::vector<std::string> split_path(const std::string& path) {
@@ -385,7 +416,7 @@ ConfigNode parse_yaml(const std::string& text, const std::string& file_name, std
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
-    errors.emplace_back(ErrorKind::usage, error.msg, "", places.at(error.mark));
+    errors.push_back(syntax_error(error, places));
     return {};
   } catch (const GaveUp&) {
     return {};

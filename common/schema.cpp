@@ -493,14 +493,28 @@ class Resolver {
 
 }  // namespace
 
+namespace {
+
+// Puts the errors of one file into the order of their places; those of files before stay where they are.
+void sort_by_place(std::vector<Error>& errors, const std::string& file) {
+  const auto first = std::find_if(errors.begin(), errors.end(),
+                                  [&](const Error& error) { return error.where().file == file; });
+  std::stable_sort(first, errors.end(), [](const Error& a, const Error& b) {
+    return std::pair(a.where().line, a.where().column) < std::pair(b.where().line, b.where().column);
+  });
+}
+
+}  // namespace
+
 Value resolve(const Schema& schema, const ConfigNode& node, std::vector<Error>& errors) {
-  if (node.kind != ConfigNode::Kind::null) return Resolver(errors).resolve(schema, node, "");
-  const bool unreadable = node.where.line == 0 && !errors.empty();
+  const bool unreadable = node.kind == ConfigNode::Kind::null && node.where.line == 0 && !errors.empty();
   if (unreadable) return {};  // parse_yaml has said why
   ConfigNode empty;
   empty.kind = ConfigNode::Kind::map;
   empty.where = node.where;
-  return Resolver(errors).resolve(schema, empty, "");
+  Value value = Resolver(errors).resolve(schema, node.kind == ConfigNode::Kind::null ? empty : node, "");
+  sort_by_place(errors, node.where.file);
+  return value;
 }
 
 }  // namespace vivify

@@ -41,7 +41,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string wanted = folded(word.substr(0, 100));
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(1, wanted.size() / 3) + 1;
+  std::size_t best_distance = (wanted.size() < 5 ? 1 : std::max<std::size_t>(2, wanted.size() / 3)) + 1;
   if (wanted.size() <= 1) return best;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(wanted, folded(candidate));

@@ -155,6 +155,21 @@ TEST(YamlTraps, SyntaxErrorsHaveAPlace) {
               ::testing::ElementsAre(::testing::ContainsRegex("^s.yaml:2:[0-9]+: error: ")));
 }
 
+TEST(YamlTraps, SyntaxErrorsSpeakPlainly) {
+  const auto only = [](const std::string& text) { return ::testing::ElementsAre(text); };
+  EXPECT_THAT(errors_of("b: [1, 2\nc: 3\n"),
+              only("s.yaml:2:2: error: a '[' before this place is not closed"));
+  EXPECT_THAT(errors_of("a: {b: 1\nc: 2\n"),
+              only("s.yaml:2:2: error: a '{' before this place is not closed"));
+  EXPECT_THAT(errors_of("a: [1]]\n"), only("s.yaml:1:7: error: this bracket closes nothing"));
+  EXPECT_THAT(errors_of("a:\n\tb: 1\n"),
+              only("s.yaml:2:3: error: a tab stands where YAML wants spaces (indent with spaces)"));
+  EXPECT_THAT(errors_of("a:\n  b: 1\n c: 2\n"),
+              only("s.yaml:3:2: error: this line does not fit the ones before (check the indentation)"));
+  EXPECT_THAT(errors_of("a: @x\n"),
+              only("s.yaml:1:4: error: a text cannot begin with this character (put it in quotes)"));
+}
+
 TEST(YamlTraps, AllProblemsOfAFileInOneGo) {
   const std::vector<std::string> errors = errors_of("a: 010\na: 2\nb: &x [*x]\nc: {<<: 1}\n---\nd: 1\n");
   ASSERT_EQ(errors.size(), 5U);

@@ -108,14 +108,14 @@ TEST(Resolve, NamesEveryProblemOfAFileInOneGo) {
           "s.yaml:2:43: error: frames.loop must be true or false, found 'yes'",
           "s.yaml:3:10: error: gravity must be a list of 3 numbers, found a list of 2",
           "s.yaml:7:5: error: unknown key 'heading_dge' in bodies[0] (did you mean heading_deg?)",
-          "s.yaml:8:37: error: bodies[0].model.density = -3 kg/m³ must be > 0",
           "s.yaml:8:12: error: bodies[0].model.stiffness is missing (it must be a number)",
-          "s.yaml:10:11: error: bodies[1].mesh must be the path of a file, found a list of 1",
-          "s.yaml:13:18: error: bodies[1].heading_deg = inf must be finite",
-          "s.yaml:12:15: error: bodies[1].friction = .nan must be a number",
-          "s.yaml:11:19: error: bodies[1].model.type = soft must be solid3d or rigid",
-          "s.yaml:14:30: error: unknown key 'vertices' in bodies[1].rest_space (it is a key of type: cage)",
+          "s.yaml:8:37: error: bodies[0].model.density = -3 kg/m³ must be > 0",
           "s.yaml:9:11: error: bodies[1].name = cup is the name of bodies[0] already",
+          "s.yaml:10:11: error: bodies[1].mesh must be the path of a file, found a list of 1",
+          "s.yaml:11:19: error: bodies[1].model.type = soft must be solid3d or rigid",
+          "s.yaml:12:15: error: bodies[1].friction = .nan must be a number",
+          "s.yaml:13:18: error: bodies[1].heading_deg = inf must be finite",
+          "s.yaml:14:30: error: unknown key 'vertices' in bodies[1].rest_space (it is a key of type: cage)",
           "s.yaml:15:10: error: backend = tegten must be tetgen or mesh3 (did you mean tetgen?)",
           "s.yaml:16:9: error: cutoff must be a number, found the quoted text '5' (remove the quotes)"));
 }
@@ -165,6 +165,18 @@ TEST(Resolve, AParseErrorIsNotFollowedByNonsense) {
   EXPECT_EQ(read("version: [1\n").errors.size(), 1U);
   EXPECT_EQ(read(kSmall + "version: 1\n").errors.size(), 1U);  // the rest is still checked:
   EXPECT_EQ(read(kSmall + "version: 1\ncutoff: -1\n").errors.size(), 2U);
+}
+
+TEST(Resolve, ErrorsOfAFileBeforeStayWhereTheyAre) {
+  std::vector<Error> errors;
+  for (const auto& [file, text] :
+       {std::pair("b.yaml", "version: [1\n"), std::pair("a.yaml", ""), std::pair("c.yaml", "5\n")}) {
+    const ConfigNode root = parse_yaml(text, file, errors);
+    resolve(sample_schema(), root, errors);
+  }
+  std::vector<std::string> files;
+  for (const Error& error : errors) files.push_back(error.where().file);
+  EXPECT_THAT(files, ElementsAre("b.yaml", "a.yaml", "a.yaml", "c.yaml"));
 }
 
 // Calls visit(field, path as for --set) for every number of the schema that the small scene reaches.

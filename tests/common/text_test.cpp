@@ -20,6 +20,7 @@ TEST(NearestWord, FindsWhatWasMeant) {
   EXPECT_EQ(nearest_word("headnig_deg", keys), "heading_deg");
   EXPECT_EQ(nearest_word("pos", keys), "position");
   EXPECT_EQ(nearest_word("fsp", keys), "fps");
+  EXPECT_EQ(nearest_word("bodys", {"camera", "bodies"}), "bodies");
 }
 
 TEST(NearestWord, SaysNothingWhenNothingIsNear) {
