@@ -75,9 +75,37 @@ struct Renderer::State {
   std::vector<std::unique_ptr<Material>> materials;
   std::map<std::string, std::uint32_t> material_index;
   std::vector<std::unique_ptr<Light>> lights;
+  Looks looks;
+  // Materials of a least roughness, made when first asked for.
+  std::map<double, std::vector<std::unique_ptr<Material>>> blurred;
+  std::mutex blurred_mutex;
+
+  std::vector<const Material*> blurred_materials(double roughness);
 };
 
+std::vector<const Material*> Renderer::State::blurred_materials(double roughness) {
+  const std::lock_guard lock(blurred_mutex);
+  auto& made = blurred[roughness];
+  std::vector<const Material*> list;
+  std::size_t i = 0;
+  for (const auto& [name, value] : looks.materials) {
+    const bool sharp = value.has("roughness") && value["roughness"].as_number() < roughness;
+    if (made.size() <= i) {
+      made.emplace_back();
+      if (sharp) {
+        Value rough = value;
+        rough.set("roughness", Value::number(roughness));
+        made.back() = make_material(rough, looks.folder);
+      }
+    }
+    list.push_back(sharp ? made[i].get() : materials[i].get());
+    ++i;
+  }
+  return list;
+}
+
 Renderer::Renderer(const Looks& looks) : state_(std::make_unique<State>()) {
+  state_->looks = looks;
   for (const auto& [name, value] : looks.materials) {
     state_->material_index[name] = static_cast<std::uint32_t>(state_->materials.size());
     state_->materials.push_back(make_material(value, looks.folder));
@@ -93,7 +121,8 @@ Film Renderer::render(const Frame& frame, const RenderSettings& settings,
   for (const auto& material : state_->materials) materials.push_back(material.get());
   std::vector<const Light*> lights;
   for (const auto& light : state_->lights) lights.push_back(light.get());
-  const World world(frame.meshes, state_->material_index, std::move(materials), std::move(lights));
+  const World world(frame.meshes, state_->material_index, std::move(materials),
+                    state_->blurred_materials(settings.indirect_roughness), std::move(lights));
   const Lens lens(frame.camera, settings.width, settings.height);
   const std::uint64_t frame_seed = hash_words(settings.seed, static_cast<std::uint64_t>(frame.number));
 

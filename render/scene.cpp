@@ -55,6 +55,15 @@ Schema render_schema() {
                               .at_least(1)
                               .at_most(1000)
                               .initially(6))
+      .field(
+          "indirect_roughness",
+          number(
+              "Least roughness of surfaces that light meets on its way to a matt one; 0 changes nothing. It "
+              "spreads out the bright specks that polished things throw on matt ones, without losing their "
+              "light.")
+              .at_least(0)
+              .at_most(1)
+              .initially(0))
       .field("seed", integer("Another seed gives other noise.").at_least(0).initially(0))
       .field(
           "clamp",
@@ -78,6 +87,7 @@ RenderSettings make_settings(const Value& value) {
   settings.splits = static_cast<int>(value["splits"].as_integer());
   settings.max_depth = static_cast<int>(value["max_depth"].as_integer());
   settings.seed = static_cast<std::uint64_t>(value["seed"].as_integer());
+  settings.indirect_roughness = value["indirect_roughness"].as_number();
   settings.clamp = value["clamp"].as_number();
   return settings;
 }

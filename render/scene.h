@@ -75,6 +75,9 @@ struct RenderSettings {
   int max_depth = 6;  // surfaces that scatter a path at most
   std::uint64_t seed = 0;
   double clamp = 0;  // largest luminance of one indirect contribution; 0 is off and unbiased
+  // Least roughness of surfaces that light meets on its way to a matt one; 0 is off and unbiased. Mirrored
+  // light is spread out there instead of making specks; none is lost.
+  double indirect_roughness = 0;
   Strategy strategy = Strategy::mis;
 };
 

@@ -22,10 +22,12 @@ std::vector<TriangleEmitters::Emitter> shining_triangles(const Geometry& geometr
 }  // namespace
 
 World::World(const std::vector<Mesh>& meshes, const std::map<std::string, std::uint32_t>& material_index,
-             std::vector<const Material*> material_list, std::vector<const Light*> light_list)
+             std::vector<const Material*> material_list, std::vector<const Material*> blurred_list,
+             std::vector<const Light*> light_list)
     : geometry(meshes, material_index),
       accel(geometry.points(), geometry.triangles()),
       materials(std::move(material_list)),
+      blurred_materials(std::move(blurred_list)),
       lights(std::move(light_list)),
       emitters(shining_triangles(geometry, materials), geometry.triangles().size()) {}
 

@@ -8,6 +8,7 @@ namespace {
 using Strategy = RenderSettings::Strategy;
 
 constexpr int kRouletteFrom = 3;         // bounces before paths may end by chance
+constexpr float kMattPdf = 1;            // per solid angle; a matt surface has 1/π at most
 constexpr std::uint32_t kGroups = 256;   // of the sampler, for each bounce
 constexpr float kShadowEnd = 1 - 1e-4f;  // of the way to a light
 
@@ -40,7 +41,7 @@ Vec3 PathTracer::follow(State state, std::uint32_t index, Sampler& sampler, Path
     if (!hit) return sum;
 
     const Surface surface = world_.geometry.surface(hit, state.ray);
-    const Material& material = world_.material(hit.triangle);
+    const Material& material = world_.material(hit.triangle, state.matt);
     state.width += state.spread * hit.t;
     TexturePoint texture_point{surface.uv, 0};
     if (material.color().textured()) {
@@ -183,6 +184,7 @@ bool PathTracer::scatter(const Vertex& vertex, const std::array<float, 4>& u, St
   state.ray = {reflected ? offset_from_surface(surface.lifted, surface.geometric)
                          : offset_from_surface(surface.position, -surface.geometric),
                direction};
+  state.matt = state.matt || (!next.delta && next.pdf < kMattPdf);
   if (!next.delta) state.spread = std::max(state.spread, std::min(0.5f, 0.2f / std::sqrt(next.pdf)));
   return true;
 }

@@ -42,6 +42,7 @@ class PathTracer {
     bool certain = true;      // camera or delta: lights could not have been sampled
     bool all_lights = false;  // at the ray's origin each light was sampled, not one of them
     bool split = false;       // the path has met a rough surface
+    bool matt = false;        // it was scattered widely
     float width = 0;          // of the ray, for textures
     float spread = 0;
     int bounce = 0;  // surfaces that scattered it

@@ -213,7 +213,7 @@ TEST(Light, ChoiceFollowsItsProbabilities) {
     owned.push_back(light(example(entry.name)));
     lights.push_back(owned.back().get());
   }
-  const World world({}, {}, {}, lights);
+  const World world({}, {}, {}, {}, lights);
   constexpr int kSamples = 50000;
   for (const Vec3& p : kPoints) {
     LightChoice choice;
@@ -245,7 +245,8 @@ TEST(Light, ShiningTrianglesFollowTheirDensity) {
   const auto dim = make_material(settings(material_schema(), "{type: emissive, radiance: 1}"), "");
   const std::vector<Mesh> meshes = {square({0.5, 2, 0}, 0.8, {0, -1, 0}, "bright"),
                                     square({-1.5, 2, 0.3}, 0.9, {0.4, -1, 0}, "dim")};
-  const World world(meshes, {{"bright", 0}, {"dim", 1}}, {bright.get(), dim.get()}, {});
+  const World world(meshes, {{"bright", 0}, {"dim", 1}}, {bright.get(), dim.get()}, {bright.get(), dim.get()},
+                    {});
   ASSERT_FALSE(world.emitters.empty());
   const Vec3 p = {0.2f, 0, 0.1f};
   double integral = 0;

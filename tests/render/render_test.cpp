@@ -251,6 +251,24 @@ TEST(Path, ClampOnlyTakesAway) {
   EXPECT_DOUBLE_EQ(scene.estimate(4).mean, whole);
 }
 
+// Wider mirrors throw no specks but the same light: more even, and nearly as bright.
+TEST(Path, IndirectRoughnessKeepsTheLight) {
+  Scene scene;
+  scene.material("matt", "{type: diffuse, color: [0.5, 0.5, 0.5]}")
+      .material("mirror", "{type: metal, color: [1, 1, 1], roughness: 0.1}");
+  scene.light(
+      "{type: area, position: [0, 3, 0], target: [0, 0, 0], size: [0.6, 0.6], radiance: 30, visible: false}");
+  scene.mesh(square({0, 0, 0}, 2, {0, 1, 0}, "matt")).mesh(square({-2, 1, 0}, 1, {1, 0, 0}, "mirror"));
+  scene.camera({0, 5, 0}, {0, 0, 0}, 40);
+  scene.settings.spp = 64;
+  scene.settings.max_depth = 3;
+  const Estimate sharp = scene.estimate();
+  scene.settings.indirect_roughness = 0.5;
+  const Estimate blurred = scene.estimate();
+  EXPECT_LT(blurred.standard_error, 0.5 * sharp.standard_error);
+  EXPECT_NEAR(blurred.mean, sharp.mean, 0.05 * sharp.mean + 3 * sharp.standard_error);
+}
+
 bool same(const Film& a, const Film& b) {
   return a.rgba == b.rgba && a.albedo == b.albedo && a.normal == b.normal && a.depth == b.depth &&
          a.id == b.id;
