@@ -21,7 +21,9 @@ std::string duration_text(double seconds) {
   if (!std::isfinite(seconds)) return "?";
   const long s = std::lround(seconds);
   char text[32];
-  if (s < 60) {
+  if (seconds < 9.95) {
+    std::snprintf(text, sizeof text, "%.1f s", seconds);
+  } else if (s < 60) {
     std::snprintf(text, sizeof text, "%ld s", s);
   } else if (s < 3600) {
     std::snprintf(text, sizeof text, "%ld:%02ld min", s / 60, s % 60);

@@ -83,11 +83,11 @@ Schema object(std::string doc);  // an object none of whose fields is required m
 // One of several objects, selected by the key `tag`; `initially("name")` makes the tag optional.
 Schema variant(std::string doc, std::string tag);
 
-// Checks `node` against `schema` and fills in defaults. Adds one Error(usage) per problem to `errors`, such
-// as
+// Checks `node` against `schema` and fills in defaults; a key without a value counts as left out. Adds one
+// Error(usage) per problem to `errors`, in the order of the file, such as
 //   configs/walk.yaml:14:21: error: bodies[0].material.density = -3 kg/m³ must be > 0
 // and unknown keys name the nearest known one. The result is whole when no error was added.
-// Paths are made absolute or left relative to `folder` of the file by resolve_path, not here.
+// Paths stay as they were written.
 Value resolve(const Schema& schema, const ConfigNode& node, std::vector<Error>& errors);
 
 std::string json_schema(const Schema& schema, const std::string& title);  // JSON Schema, draft 2020-12
