@@ -79,7 +79,7 @@ TriangleMesh wrap_and_collapse(const TriangleMesh& enclosed, double diagonal, in
 
 TriangleMesh guarded_wrap_and_collapse(const TriangleMesh& enclosed, double diagonal, int vertices) {
   const Bytes bytes =
-      run_guarded("making a cage", "give a cage file, or ask for 8 vertices", {120, 4096}, [&] {
+      run_guarded("making a cage", "give a cage file, or ask for 8 vertices", {300, 4096}, [&] {
         const TriangleMesh cage = wrap_and_collapse(enclosed, diagonal, vertices);
         return ByteWriter().put(cage.V).put(cage.F).take();
       });
