@@ -34,6 +34,7 @@ constexpr double kWantedAngle = 18;  // degrees: what improve_tetrahedra works t
 constexpr double kOffsetShare = 0.06;      // offset of the wrap over its alpha
 constexpr double kFitDistance = 4;         // vertices within this many offsets go back onto the surface
 constexpr double kCollapseShare = 0.6;     // vertices before even remeshing over vertices after it
+constexpr int kEnough = 20;                // vertices of the surface to start from, over the wanted ones
 constexpr double kTetVolume = 0.3;         // largest tetrahedron, of the cubed mean edge of the surface
 constexpr double kAfterFailure = 0.96;     // edge length after a failed attempt, of that attempt
 constexpr double kUnchangedVolume = 0.03;  // a wrap that changes the volume by less closed nothing
@@ -337,9 +338,13 @@ std::vector<Base> bases(const Task& task, double factor) {
   const bool same = std::abs(wrap_volume / volume - 1) < kUnchangedVolume &&
                     euler_characteristic(wrap.surface.F) == euler_characteristic(task.drawn.F) &&
                     component_count(wrap.surface.F) == component_count(task.drawn.F);
-  if (!same) return {wrap};
-  if (factor != 1) return {wrap};  // the drawn surface was tried before
-  return {Base{task.drawn, 0, 0}, wrap};
+  if (!same || factor != 1) return {wrap};  // for another factor, the drawn surface was tried before
+  Base drawn = {task.drawn, 0, 0};
+  if (const int enough = kEnough * task.settings.vertices; drawn.surface.V.rows() > 2 * enough) {
+    drawn.surface = guarded_surface(task, "simplifying the surface",
+                                    [&] { return collapse_surface(task.drawn, enough); });
+  }
+  return {drawn, wrap};
 }
 
 std::optional<TetMesh> improved(const Task& task, const TetMesh& mesh, std::string& fault) {
@@ -418,8 +423,6 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
         best_score = score;
         result.volume_ratio = volume_ratio;
         result.mesh = std::move(*mesh);
-        result.min_dihedral = angles.min;
-        result.max_dihedral = angles.max;
         result_alpha = base.alpha;
       }
     } catch (const Error& error) {
@@ -446,6 +449,9 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
                                            : "ask for another number of vertices");
   }
   sort_mesh(result.mesh);
+  const AngleRange range = dihedral_range(result.mesh);
+  result.min_dihedral = range.min;
+  result.max_dihedral = range.max;
   result.components = component_count(result.mesh.T);
   const ClosestPoint closest_on_mesh({result.mesh.V, boundary_faces(result.mesh), {}, {}, {}});
   for (Eigen::Index v = 0; v < closed_surface.V.rows(); ++v) {

@@ -24,8 +24,8 @@ TetMesh mesh_with_cgal(const TriangleMesh& closed_surface, double size) {
   const Domain domain(surface, &random);
   const Criteria criteria(P::facet_angle = 25, P::facet_size = size, P::facet_distance = size / 8,
                           P::cell_radius_edge_ratio = 2, P::cell_size = 1.2 * size);
-  const Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, P::perturb(P::sliver_bound = 12),
-                                                     P::exude(P::sliver_bound = 12));
+  const Complex complex = CGAL::make_mesh_3<Complex>(
+      domain, criteria, P::manifold(), P::perturb(P::sliver_bound = 12), P::exude(P::sliver_bound = 12));
   TetMesh mesh;
   std::map<Triangulation::Vertex_handle, int> index;
   std::vector<Eigen::Vector3d> points;
