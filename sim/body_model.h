@@ -19,7 +19,8 @@ struct SolverSettings {
   std::string method = "sqp";  // sqp | reduced
   bool exact_hessian = false;  // the full blocks A, B, C of (13) instead of Gauss–Newton
   int max_iterations = 20;
-  double decrement = 1e-4;  // stop at this Newton decrement, in units of weight · height
+  double decrement = 1e-4;   // stop at this Newton decrement, in units of weight · height
+  double small_gain = 1e-4;  // relative; two such gains in a row end the iteration
 };
 
 struct BodyModel {

@@ -89,7 +89,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
     }
     if (!accepted) break;
     solution.rest = problem.rest_point(solution.rest.q, true);
-    small_gains = before - objective < kSmallGain * std::abs(before) ? small_gains + 1 : 0;
+    small_gains = before - objective < body.solver.small_gain * std::abs(before) ? small_gains + 1 : 0;
     if (small_gains == 2) {
       solution.optimal = true;
       break;

@@ -101,7 +101,8 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
 
     solution.rest = problem.rest_point(solution.rest.q, true);
     const double gain = objective - problem.objective(solution.at.x, solution.rest);
-    const bool small = std::abs(gain) < kSmallGain * objective && c.lpNorm<Eigen::Infinity>() <= feasible;
+    const bool small =
+        std::abs(gain) < body.solver.small_gain * objective && c.lpNorm<Eigen::Infinity>() <= feasible;
     small_gains = small ? small_gains + 1 : 0;
     if (small_gains == 2) {
       solution.optimal = true;

@@ -44,7 +44,6 @@ inline constexpr double kSmallestRest = 0.2;
 inline constexpr double kLargestChange = 0.1;  // of a parameter in one iteration, in body heights
 inline constexpr int kMaxDampings = 8;         // raises of the Levenberg–Marquardt parameter before halving
 inline constexpr int kMaxStepHalvings = 10;
-inline constexpr double kSmallGain = 1e-4;  // relative; two such gains in a row end the iteration
 double raise_damping(double mu);            // after a refused trial
 double lower_damping(double mu);            // after a first trial that was accepted
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq);

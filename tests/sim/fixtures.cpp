@@ -252,7 +252,9 @@ RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
   TetMesh mesh = small_box();
   const Vector straight = flat(mesh.V);
   mesh.V = rows(rigid(tilt, {0, 0, 0}, straight));
-  BodyInput input = box_input(mesh);
+  BodyInput input =
+      box_input(mesh, {.model = "{type: solid3d, density: 300, stiffness: 88000, volume_stiffness: 88000}",
+                       .regularizer = "{stiffness: 0.03, volume_stiffness: 0.03, rate: 0.03}"});
   input.contact_points = join(vertex_contacts(mesh), fractional_contacts(mesh, seed));
   body = make_body_model(input, world);
   const double layer = 0.02;
