@@ -29,18 +29,19 @@ constexpr double kCountAim = 0.03;
 constexpr int kCountSteps = 10;
 constexpr double kGoodAngle = 10;    // degrees: no further attempt when every dihedral angle is at least this
 constexpr double kGoodVolume = 0.1;  // and when the volume differs from the drawn one by at most this share
+constexpr double kGoodFloor = 0.5;   // and when at most this share of the flat face to stand on is lost
 constexpr double kWorstAngle = 2;    // degrees: an error below
 constexpr double kWantedAngle = 18;  // degrees: what improve_tetrahedra works towards
 constexpr double kOffsetShare = 0.06;      // offset of the wrap over its alpha
 constexpr double kFitDistance = 4;         // vertices within this many offsets go back onto the surface
 constexpr double kCollapseShare = 0.6;     // vertices before even remeshing over vertices after it
-constexpr int kEnough = 20;                // vertices of the surface to start from, over the wanted ones
+constexpr int kEnough = 200;               // vertices of the surface to start from, over the wanted ones
 constexpr double kTetVolume = 0.3;         // largest tetrahedron, of the cubed mean edge of the surface
 constexpr double kAfterFailure = 0.96;     // edge length after a failed attempt, of that attempt
 constexpr double kUnchangedVolume = 0.03;  // a wrap that changes the volume by less closed nothing
 constexpr double kFloorThickness = 0.002;  // of the size: what counts as flat
 constexpr double kFloorShare = 0.003;      // of the area: smallest flat face to stand on
-constexpr double kFloorReach = 0.15;       // of the mean edge: vertices this near to the floor go down to it
+constexpr double kFloorReach = 0.2;        // of the mean edge: vertices this near to the floor go down to it
 constexpr double kSurfaceTolerance =
     0.004;  // of the size: how far the boundary may move while shapes are improved
 
@@ -67,9 +68,9 @@ struct Task {
   const TriangleMesh& drawn;
   const ClosestPoint& closest;
   const TetrahedralizeSettings& settings;
-  double size;      // diagonal of the drawn surface (m)
-  bool flat_floor;  // does it stand on a flat face?
-  double floor;     // its smallest height (m)
+  double size;        // diagonal of the drawn surface (m)
+  double floor;       // its smallest height (m)
+  double floor_area;  // of the flat face that it stands on (m²), 0 without one
 };
 
 struct Backend {
@@ -108,27 +109,27 @@ double area(const TriangleMesh& mesh) {
   return sum;
 }
 
-// Is a part of the surface a flat face at its smallest height?
-bool stands_flat(const TriangleMesh& mesh, double floor, double size) {
-  double flat = 0;
+// Area of the triangles that lie within `thickness` of the height `floor` (m²).
+double area_on_floor(const TriangleMesh& mesh, double floor, double thickness) {
+  double sum = 0;
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
     const Eigen::RowVector3d a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)),
                              c = mesh.V.row(mesh.F(f, 2));
-    if (std::max({a.y(), b.y(), c.y()}) < floor + kFloorThickness * size)
-      flat += 0.5 * (b - a).cross(c - a).norm();
+    if (std::max({a.y(), b.y(), c.y()}) <= floor + thickness) sum += 0.5 * (b - a).cross(c - a).norm();
   }
-  return flat > kFloorShare * area(mesh);
+  return sum;
 }
 
 // A wrap stands off the surface by its offset; its vertices go back, but for those that close a gap. Vertices
 // just above the floor go down to it.
-TriangleMesh fitted(const Task& task, TriangleMesh mesh, double offset, double share) {
+TriangleMesh fitted(const Task& task, TriangleMesh mesh, double offset, double share, bool to_floor) {
   const double reach = offset > 0 ? kFitDistance * offset : task.size;
+  to_floor = to_floor && task.floor_area > 0;
   const double floor_reach = kFloorReach * mean_edge(mesh);
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
     const ClosestPoint::Hit hit = task.closest(mesh.V.row(v));
     if (hit.distance < reach) mesh.V.row(v) += share * (hit.point.transpose() - mesh.V.row(v));
-    if (task.flat_floor && mesh.V(v, 1) < task.floor + share * floor_reach) mesh.V(v, 1) = task.floor;
+    if (to_floor && mesh.V(v, 1) < task.floor + floor_reach) mesh.V(v, 1) = task.floor;
   }
   return mesh;
 }
@@ -147,9 +148,11 @@ TriangleMesh coarse_surface(const Task& task, const Base& base, Spread spread, d
     const auto collapsed = static_cast<int>(std::clamp(share * count, 6.0, 1e6));
     TriangleMesh coarse = collapse_surface(base.surface, collapsed);
     if (spread == Spread::even) coarse = remesh_surface(coarse, edge);
-    for (const double fit : {1.0, 0.75, 0.5, 0.0}) {
-      TriangleMesh mesh = fitted(task, coarse, base.offset, fit);
-      if (!intersects_itself(mesh) && signed_volume(mesh) > 0) return mesh;
+    for (const bool to_floor : {true, false}) {
+      for (const double fit : {1.0, 0.75, 0.5, 0.0}) {
+        TriangleMesh mesh = fitted(task, coarse, base.offset, fit, to_floor);
+        if (!intersects_itself(mesh) && signed_volume(mesh) > 0) return mesh;
+      }
     }
     throw Error(ErrorKind::geometry, "the coarsened surface intersects itself");
   });
@@ -195,7 +198,7 @@ ImproveSettings improve_settings(const Task& task) {
   ImproveSettings settings;
   settings.wanted_angle = kWantedAngle;
   settings.surface_tolerance = kSurfaceTolerance * task.size;
-  settings.keep_floor = task.flat_floor;
+  settings.keep_floor = task.floor_area > 0;
   return settings;
 }
 
@@ -220,7 +223,7 @@ Filling fill_with_tetgen(const Task& task, const Base& base, Spread spread) {
 Filling fill_with_cgal(const Task& task, const Base& base, Spread) {
   const TriangleMesh surface = guarded_surface(task, "fitting the surface", [&] {
     for (const double fit : {1.0, 0.5}) {
-      TriangleMesh mesh = fitted(task, base.surface, base.offset, fit);
+      TriangleMesh mesh = fitted(task, base.surface, base.offset, fit, true);
       if (!intersects_itself(mesh)) return mesh;
     }
     return base.surface;
@@ -282,6 +285,13 @@ std::string find_shape_fault(const TetMesh& mesh) {
   const double angle = dihedral_range(mesh).min;
   if (angle < kWorstAngle) return "the smallest dihedral angle is " + rounded(angle, 1) + " degrees";
   return {};
+}
+
+// Which share of the flat face that the drawn surface stands on the mesh does not stand on.
+double lost_floor_share(const Task& task, const TetMesh& mesh) {
+  if (!(task.floor_area > 0)) return 0;
+  const double kept = area_on_floor({mesh.V, boundary_faces(mesh), {}, {}, {}}, task.floor, 1e-9 * task.size);
+  return std::max(0.0, 1 - kept / task.floor_area);
 }
 
 // Vertices by coordinates, tetrahedra by their vertices: the order does not depend on the backend.
@@ -395,12 +405,9 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
       find_entry(std::span<const Backend>(kBackends), settings.backend, "tetrahedra backend");
   const ClosestPoint closest(closed_surface);
   const Box box = bounding_box(closed_surface.V);
-  const Task task = {closed_surface,
-                     closest,
-                     settings,
-                     box.diagonal(),
-                     stands_flat(closed_surface, box.min.y(), box.diagonal()),
-                     box.min.y()};
+  const double floor_area = area_on_floor(closed_surface, box.min.y(), kFloorThickness * box.diagonal());
+  const bool stands = floor_area > kFloorShare * area(closed_surface);
+  const Task task = {closed_surface, closest, settings, box.diagonal(), box.min.y(), stands ? floor_area : 0};
 
   TetrahedralizeResult result;
   double result_alpha = 0;
@@ -417,8 +424,11 @@ TetrahedralizeResult tetrahedralize(const TriangleMesh& closed_surface,
       if (!mesh) return false;
       const AngleRange angles = dihedral_range(*mesh);
       const double volume_ratio = tet_volumes(*mesh).sum() / drawn_volume;
-      const double score = std::min(angles.min / kGoodAngle, 1.0) - std::abs(volume_ratio - 1);
-      good = angles.min >= kGoodAngle && std::abs(volume_ratio - 1) <= kGoodVolume;
+      const double lost_floor = lost_floor_share(task, *mesh);
+      const double score =
+          std::min(angles.min / kGoodAngle, 1.0) - std::abs(volume_ratio - 1) - 0.5 * lost_floor;
+      good =
+          angles.min >= kGoodAngle && std::abs(volume_ratio - 1) <= kGoodVolume && lost_floor <= kGoodFloor;
       if (good || score > best_score) {
         best_score = score;
         result.volume_ratio = volume_ratio;
