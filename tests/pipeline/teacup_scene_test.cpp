@@ -1,0 +1,148 @@
+// configs/teacup.yaml as it is shipped: the cup does what the scene says, and obeys the laws of physics while
+// it does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/file.h"
+#include "common/hdf5_file.h"
+#include "tests/common/temporary_folder.h"
+#include "tests/pipeline/program.h"
+
+namespace vivify::pipeline {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+// The columns of sim/steps.csv, by name.
+class Steps {
+ public:
+  explicit Steps(const std::filesystem::path& csv) {
+    std::istringstream lines(read_text_file(csv));
+    std::string line;
+    std::getline(lines, line);
+    const std::vector<std::string> names = cells(line);
+    while (std::getline(lines, line)) {
+      const std::vector<std::string> row = cells(line);
+      for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]].push_back(row.at(i));
+    }
+  }
+  std::size_t size() const { return columns_.at("step").size(); }
+  double operator()(const std::string& name, std::size_t row) const {
+    return std::stod(columns_.at(name).at(row));
+  }
+  double largest(const std::string& name) const {
+    double value = -INFINITY;
+    for (std::size_t i = 0; i < size(); ++i) value = std::max(value, (*this)(name, i));
+    return value;
+  }
+
+ private:
+  static std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> result;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) result.push_back(cell);
+    return result;
+  }
+  std::map<std::string, std::vector<std::string>> columns_;
+};
+
+// A stretch of steps without any contact.
+struct Flight {
+  std::size_t first, last;
+  double duration, clearance;
+};
+
+std::vector<Flight> flights(const Steps& steps, double h) {
+  std::vector<Flight> found;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps("contacts", i) != 0) continue;
+    Flight flight{i, i, 0, 0};
+    for (; i < steps.size() && steps("contacts", i) == 0; ++i) {
+      flight.last = i;
+      flight.clearance = std::max(flight.clearance, steps("min_clearance_m", i));
+    }
+    flight.duration = static_cast<double>(flight.last - flight.first + 1) * h;
+    if (i < steps.size()) found.push_back(flight);  // one that ends within the run
+  }
+  return found;
+}
+
+class TeacupScene : public testing::TestWithParam<int> {};
+
+TEST_P(TeacupScene, HopsAlongItsHeadingAndObeysTheLaws) {
+  const int heading_deg = GetParam();
+  const testing_support::TemporaryFolder folder;
+  const std::filesystem::path out = folder / "out";
+  const testing_support::Outcome outcome = testing_support::vivify(
+      {"simulate", VIVIFY_SOURCE_DIR "/configs/teacup.yaml", "-o", out.string(), "--progress=none", "-q",
+       "--set", "bodies.cup.controller.heading_deg=" + std::to_string(heading_deg)});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+
+  const auto summary = nlohmann::json::parse(read_text_file(out / "sim/summary.json"));
+  const auto& cup = summary["bodies"]["cup"];
+  EXPECT_EQ(summary["frames"], 96);
+  EXPECT_GE(cup["dofs"], 228);
+  EXPECT_LE(cup["dofs"], 375);
+  EXPECT_EQ(cup["params"], 24);
+  const double h = summary["h_s"];
+  EXPECT_LE(h, 1.0 / 48 + 1e-12);
+
+  const Hdf5Reader mesh(out / "mesh/cup.h5");
+  const RowMatrixXd drawn = mesh.matrix("/surface/V");
+  EXPECT_GE(mesh.int_matrix("/surface/F").rows(), 20000);
+  const double height = drawn.col(1).maxCoeff() - drawn.col(1).minCoeff();
+  const double weight = mesh.vector("/mass").sum() * kGravity;
+
+  const Steps steps(out / "sim/steps.csv");
+  const std::vector<Flight> hops = flights(steps, h);
+  EXPECT_GE(hops.size(), 3u);
+  for (const Flight& hop : hops) {
+    EXPECT_GE(hop.duration, 0.2);
+    EXPECT_GE(hop.clearance, 0.1 * height);
+  }
+
+  // Travel in the asked direction, and little beside it.
+  const std::size_t end = steps.size() - 1;
+  const double dx = steps("com_x_m", end) - steps("com_x_m", 0),
+               dz = steps("com_z_m", end) - steps("com_z_m", 0);
+  const double heading = heading_deg * M_PI / 180;
+  EXPECT_GE(dx * std::sin(heading) + dz * std::cos(heading), 2 * height);
+  EXPECT_LE(std::abs(dx * std::cos(heading) - dz * std::sin(heading)), 0.25 * height);
+
+  EXPECT_LE(steps.largest("tilt_deg"), 45);
+  EXPECT_LE(steps.largest("max_penetration_m"), 0.01 * height);
+  EXPECT_LE(steps.largest("residual_rel"), 1e-8);
+  EXPECT_LE(steps.largest("internal_force_sum_n"), 1e-9 * weight);
+  EXPECT_LE(steps.largest("internal_torque_sum_nm"), 1e-9 * weight * height);
+
+  // In flight the centre of mass follows the parabola of implicit Euler, whatever the rest shape does.
+  for (const Flight& hop : hops) {
+    for (std::size_t i = hop.first; i <= hop.last; ++i) {
+      const double n = static_cast<double>(i - hop.first);
+      const auto along = [&](const char* position, const char* velocity) {
+        return steps(position, i) - steps(position, hop.first) - n * h * steps(velocity, hop.first);
+      };
+      EXPECT_NEAR(along("com_x_m", "vel_x_m_s"), 0, 1e-8);
+      EXPECT_NEAR(along("com_y_m", "vel_y_m_s"), -kGravity * h * h * n * (n + 1) / 2, 1e-8);
+      EXPECT_NEAR(along("com_z_m", "vel_z_m_s"), 0, 1e-8);
+    }
+  }
+
+  int fallbacks = 0, in_a_row = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    in_a_row = steps("fallback", i) != 0 ? in_a_row + 1 : 0;
+    fallbacks += in_a_row > 0;
+    EXPECT_LT(in_a_row, 3) << "step " << i + 1;
+  }
+  EXPECT_LE(fallbacks, 0.01 * static_cast<double>(steps.size()));
+  EXPECT_EQ(cup["fallback_steps"], fallbacks);
+}
+
+INSTANTIATE_TEST_SUITE_P(Headings, TeacupScene, testing::Values(0, 90));
+
+}  // namespace
+}  // namespace vivify::pipeline
