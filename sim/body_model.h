@@ -18,7 +18,7 @@ namespace vivify::sim {
 struct SolverSettings {
   std::string method = "sqp";  // sqp | reduced
   bool exact_hessian = false;  // the full blocks A, B, C of (13) instead of Gauss–Newton
-  int max_iterations = 20;
+  int max_iterations = 50;
   double decrement = 1e-4;   // stop at this Newton decrement, in units of weight · height
   double small_gain = 1e-4;  // relative; two such gains in a row end the iteration
 };
