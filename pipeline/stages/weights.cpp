@@ -67,7 +67,7 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
     try {
       ledger.commit(product->file, product->key, make_body(job, body));
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::geometry) throw;
+      if (error.kind() != ErrorKind::geometry && error.kind() != ErrorKind::numerical) throw;
       const Value& file = body["rest_space"]["file"];
       throw Error(error.kind(), body["name"].as_string() + ": " + error.what(), error.hint(),
                   file.is_null() ? body["rest_space"].where() : file.where());

@@ -138,6 +138,15 @@ TEST(WrongProgram, NoFfmpegKeepsThePictures) {
   EXPECT_THAT(again.err, HasSubstr("render: cached"));
 }
 
+TEST(WrongNumbers, SimulationThatCannotGoOnIsFour) {
+  TinyScene scene;
+  scene.change("stiffness: 30000", "stiffness: 1e30, volume_stiffness: 1e30");
+  const Outcome outcome = run(scene, "simulate");
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("ball"));
+  EXPECT_FALSE(fs::exists(scene.out() / "sim/steps.csv"));
+}
+
 // A disk that is full in the middle of one file of each kind.
 class ShortWrite : public testing::TestWithParam<const char*> {};
 

@@ -108,6 +108,16 @@ TEST(Run, WritesWhatIsPromised) {
   EXPECT_GT(timing.at("bodies").at("ball").at("wall_per_sim_second"), 0);
 }
 
+TEST(Run, SceneWithoutAnythingIsAVideoOfTheSky) {
+  const TinyScene scene;
+  write_file_atomic(
+      scene.file(),
+      std::string_view("version: 1\nframes: {duration_s: 0.1}\nrender: {size: [32, 18], spp: 1}\n"));
+  const Outcome outcome = run(scene, scene.out());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(scene.out() / "tiny.mp4"));
+}
+
 TEST(Run, StepsAndSummaryAgree) {
   const TinyScene scene;
   ASSERT_EQ(run(scene, scene.out(), {}, {}, "simulate").code, 0);
