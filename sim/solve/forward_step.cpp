@@ -10,7 +10,7 @@ constexpr double kArmijo = 1e-4;
 }  // namespace
 
 ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x,
-                           double tolerance, StepWorkspace& workspace) {
+                           double tolerance, StepWorkspace& workspace, bool factorized) {
   ForwardResult result;
   result.at = problem.deformed_point(x);
   Eigen::VectorXd c = problem.residual(result.at, rest);
@@ -21,11 +21,15 @@ ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, co
     result.converged = result.residual <= tolerance;
     if (result.converged || result.iterations == kMaxIterations || !std::isfinite(potential)) return result;
 
-    problem.stiffness(result.at, rest, workspace.D);
-    for (double shift = 1; !workspace.solver.factorize(workspace.D); shift *= 4) {
-      if (shift > 1e12) return result;
-      problem.add_inertia(shift, workspace.D);  // only the direction changes, not the equation that is solved
+    if (!factorized) {
+      problem.stiffness(result.at, rest, workspace.D);
+      for (double shift = 1; !workspace.solver.factorize(workspace.D); shift *= 4) {
+        if (shift > 1e12) return result;
+        problem.add_inertia(shift,
+                            workspace.D);  // only the direction changes, not the equation that is solved
+      }
     }
+    factorized = false;
     const Eigen::VectorXd step = -workspace.solver.solve(c);
     const double slope = c.dot(step);
     bool accepted = false;

@@ -22,9 +22,10 @@ struct StepWorkspace {
   LinearSolver solver;
 };
 
-// From `x`, until ‖c‖∞ ≤ tolerance · weight.
+// From `x`, until ‖c‖∞ ≤ tolerance · weight. `factorized`: the workspace holds the factorisation of D at (x,
+// rest).
 ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, const Eigen::VectorXd& x,
-                           double tolerance, StepWorkspace& workspace);
+                           double tolerance, StepWorkspace& workspace, bool factorized = false);
 
 inline constexpr double kStartTolerance = 1e-4;    // a feasible start need not be exact
 inline constexpr double kFinishTolerance = 1e-11;  // every step that is kept is exact physics

@@ -26,6 +26,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
   const double unit = body.weight * body.height;
   double mu = 0;
   int small_gains = 0;
+  bool factorized = false;  // the workspace holds D of the solution
   while (start.converged && solution.iterations < body.solver.max_iterations) {
     Eigen::VectorXd dq, dx, gradient;
     bool accepted = false;
@@ -37,7 +38,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
       const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
       if (!block.definite()) break;
       if (block.decrement() <= body.solver.decrement * unit) {
-        solution.optimal = true;
+        solution.optimal = factorized = true;
         break;
       }
       gradient = block.reduced_gradient();
@@ -95,7 +96,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
       break;
     }
   }
-  finish_exactly(problem, solution, workspace);
+  finish_exactly(problem, solution, workspace, factorized);
   return solution;
 }
 

@@ -33,6 +33,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
   };
   double mu = 0, gamma = 0;
   int small_gains = 0;
+  bool factorized = false;  // the workspace holds D of the solution
   while (solution.iterations < body.solver.max_iterations) {
     const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
     const bool is_feasible = block.residual().lpNorm<Eigen::Infinity>() <= feasible;
@@ -41,7 +42,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
       continue;
     }
     if (block.decrement() <= body.solver.decrement * unit) {
-      solution.optimal = is_feasible;
+      solution.optimal = factorized = is_feasible;
       if (is_feasible || !restore()) break;
       continue;  // only the equations of motion are left to be solved
     }
@@ -109,7 +110,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
       break;
     }
   }
-  finish_exactly(problem, solution, workspace);
+  finish_exactly(problem, solution, workspace, factorized);
   return solution;
 }
 

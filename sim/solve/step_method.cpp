@@ -25,9 +25,10 @@ Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
   return dq;
 }
 
-void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace) {
+void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace,
+                    bool factorized) {
   const ForwardResult finish =
-      forward_step(problem, solution.rest, solution.at.x, kFinishTolerance, workspace);
+      forward_step(problem, solution.rest, solution.at.x, kFinishTolerance, workspace, factorized);
   solution.at = finish.at;
   solution.exact = finish.converged;
   solution.residual = finish.residual;

@@ -44,10 +44,11 @@ inline constexpr double kSmallestRest = 0.2;
 inline constexpr double kLargestChange = 0.1;  // of a parameter in one iteration, in body heights
 inline constexpr int kMaxDampings = 8;         // raises of the Levenberg–Marquardt parameter before halving
 inline constexpr int kMaxStepHalvings = 10;
-double raise_damping(double mu);            // after a refused trial
-double lower_damping(double mu);            // after a first trial that was accepted
+double raise_damping(double mu);  // after a refused trial
+double lower_damping(double mu);  // after a first trial that was accepted
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq);
-// Ends a solution with an exact forward step from its x.
-void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace);
+// Ends a solution with an exact forward step from its x. `factorized`: the workspace holds D of the solution.
+void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace,
+                    bool factorized = false);
 
 }  // namespace vivify::sim

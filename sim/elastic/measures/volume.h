@@ -23,7 +23,10 @@ struct Volume {
     const Eigen::Vector3d a = x.col(1) - x.col(0), b = x.col(2) - x.col(0), c = x.col(3) - x.col(0);
     const Eigen::Vector3d ga = b.cross(c) / 6, gb = c.cross(a) / 6, gc = a.cross(b) / 6;
     Gradient g;
-    g << -(ga + gb + gc), ga, gb, gc;
+    g.segment<3>(0) = -(ga + gb + gc);
+    g.segment<3>(3) = ga;
+    g.segment<3>(6) = gb;
+    g.segment<3>(9) = gc;
     return g;
   }
 
@@ -38,29 +41,28 @@ struct Volume {
   }
 
  private:
-  static Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d m;
-    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return m;
-  }
-
   // Second derivatives with respect to the edge vectors, ∂²s/∂a∂b = −[c]×/6 and cyclic; point 0 takes minus
-  // the sums.
+  // the sums. Every block is the cross matrix of a vector, and the blocks on the diagonal are zero.
   static Hessian from_edges(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-    const Eigen::Matrix3d ab = -cross_matrix(c) / 6, bc = -cross_matrix(a) / 6, ca = -cross_matrix(b) / 6;
     Hessian H = Hessian::Zero();
-    H.block<3, 3>(3, 6) = ab;
-    H.block<3, 3>(6, 3) = ab.transpose();
-    H.block<3, 3>(6, 9) = bc;
-    H.block<3, 3>(9, 6) = bc.transpose();
-    H.block<3, 3>(9, 3) = ca;
-    H.block<3, 3>(3, 9) = ca.transpose();
-    for (int k = 3; k < 12; k += 3) {
-      const Eigen::Matrix3d row = H.block<3, 3>(k, 3) + H.block<3, 3>(k, 6) + H.block<3, 3>(k, 9);
-      H.block<3, 3>(k, 0) = -row;
-      H.block<3, 3>(0, k) = -row.transpose();
-    }
-    H.block<3, 3>(0, 0) = -(H.block<3, 3>(3, 0) + H.block<3, 3>(6, 0) + H.block<3, 3>(9, 0));
+    const auto set = [&H](int row, int column, const Eigen::Vector3d& v) {
+      const auto put = [&H, row, column](int i, int j, double value) {
+        H(3 * row + i, 3 * column + j) = value;
+        H(3 * column + j, 3 * row + i) = value;
+      };
+      put(0, 1, -v.z() / 6);
+      put(0, 2, v.y() / 6);
+      put(1, 0, v.z() / 6);
+      put(1, 2, -v.x() / 6);
+      put(2, 0, -v.y() / 6);
+      put(2, 1, v.x() / 6);
+    };
+    set(1, 2, -c);
+    set(2, 3, -a);
+    set(3, 1, -b);
+    set(0, 1, b - c);
+    set(0, 2, c - a);
+    set(0, 3, a - b);
     return H;
   }
 };
