@@ -149,6 +149,7 @@ class SemanticCheck {
     looks();
     camera();
     frames();
+    picture();
   }
 
  private:
@@ -216,6 +217,14 @@ class SemanticCheck {
     } else if (count > kMostFrames) {
       fail(frames["duration_s"], "frames.duration_s = " + number_text(frames["duration_s"].as_number()) +
                                      " s makes more than a million frames");
+    }
+  }
+
+  void picture() {
+    try {
+      render::make_settings(scene_.settings["render"]);
+    } catch (const Error& error) {
+      errors_.push_back(error);
     }
   }
 

@@ -193,6 +193,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongScene{"syntax", "bodies:", "bodies: ]", {":5:"}},
         WrongScene{"wrong_type", "fps: 24", "fps: fast", {":2:15: error: frames.fps"}},
         WrongScene{"too_short", "duration_s: 0.25", "duration_s: 0.001", {":2:", "shorter than one frame"}},
+        WrongScene{
+            "broken_pixels", "size: [32, 18]", "size: [32.5, 18]", {":19:", "whole numbers of pixels"}},
         WrongScene{"no_controller", "type: hop", "type: hopp", {":12:", "hopp", "hop"}}),
     [](const auto& parameter) { return parameter.param.name; });
 
