@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file.h"
 #include "common/hdf5_file.h"
 #include "sim/contact/contact_points.h"
 #include "sim/settings.h"
@@ -49,9 +50,16 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-Value settings(const Schema& schema, const std::string& yaml) {
+const ConfigNode& entry(const ConfigNode& map, const std::string& key) {
+  for (const ConfigNode::Entry& found : map.entries) {
+    if (found.key == key) return found.value;
+  }
+  throw Error(ErrorKind::usage, "the resolved scene has no '" + key + "'");
+}
+
+Value settings(const Schema& schema, const ConfigNode& node) {
   std::vector<Error> errors;
-  Value value = resolve(schema, parse_yaml(yaml, "bench", errors), errors);
+  Value value = resolve(schema, node, errors);
   if (!errors.empty()) throw errors.front();
   return value;
 }
@@ -59,6 +67,13 @@ Value settings(const Schema& schema, const std::string& yaml) {
 // 4 by 6 by 5 vertices, each cell cut into six tetrahedra around its diagonal, with the corners of a box as
 // the cage.
 void make_box(BodyInput& input) {
+  input.name = "box";
+  input.model = settings(model_schema(), {});
+  input.regularizer = settings(regularizer_schema(), {});
+  input.contact = settings(contact_schema(), {});
+  input.solver = settings(solver_schema(), {});
+  std::vector<Error> errors;
+  input.controller = settings(controller_schema(), parse_yaml("{type: hop}", "bench", errors));
   static constexpr int kOrder[6][3] = {{1, 2, 4}, {2, 4, 1}, {4, 1, 2}, {1, 4, 2}, {2, 1, 4}, {4, 2, 1}};
   const int nodes[3] = {4, 6, 5};
   const auto index = [&](int i, int j, int k) { return i + nodes[0] * (j + nodes[1] * k); };
@@ -107,21 +122,27 @@ void make_box(BodyInput& input) {
 }
 
 void load_body(BodyInput& input, const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> meshes;
-  for (const auto& entry : std::filesystem::directory_iterator(out / "mesh")) {
-    if (entry.path().extension() == ".h5") meshes.push_back(entry.path());
-  }
-  if (meshes.empty()) throw Error(ErrorKind::usage, "no mesh in " + out.string());
-  std::sort(meshes.begin(), meshes.end());
-  const Hdf5Reader mesh(meshes.front());
+  std::vector<Error> errors;
+  const std::string file = (out / "scene.resolved.yaml").string();
+  const ConfigNode scene = parse_yaml(read_text_file(file), file, errors);
+  if (!errors.empty()) throw errors.front();
+  const ConfigNode& body = entry(scene, "bodies").items.at(0);
+  input.name = entry(body, "name").scalar;
+  input.model = settings(model_schema(), entry(body, "model"));
+  input.regularizer = settings(regularizer_schema(), entry(body, "regularizer"));
+  input.contact = settings(contact_schema(), entry(body, "contact"));
+  input.solver = settings(solver_schema(), entry(body, "solver"));
+  input.controller = settings(controller_schema(), entry(body, "controller"));
+  const Hdf5Reader mesh(out / "mesh" / (input.name + ".h5"));
   input.rest.V = mesh.matrix("/X0");
   input.rest.T = mesh.int_matrix("/elements");
-  input.cage_weights = Hdf5Reader(out / "weights" / meshes.front().filename()).matrix("/weights");
+  input.cage_weights = Hdf5Reader(out / "weights" / (input.name + ".h5")).matrix("/weights");
   const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
   Tetrahedra corners(tet.size(), 4);
   for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.T.row(tet[i]);
   input.contact_points =
-      select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"), 160);
+      select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"),
+                            static_cast<int>(input.contact["points"].as_integer()));
 }
 
 std::vector<Collider> ground(const BodyInput& input) {
@@ -224,19 +245,13 @@ Parts time_parts(const BodyModel& body, const std::vector<Collider>& colliders, 
 int bench(int argc, char** argv) {
   const double seconds = argc > 2 ? std::atof(argv[2]) : 2;
   BodyInput hopping;
-  hopping.name = "body";
   if (argc > 1) {
     load_body(hopping, argv[1]);
   } else {
     make_box(hopping);
   }
-  hopping.model = settings(model_schema(), "{}");
-  hopping.regularizer = settings(regularizer_schema(), "{}");
-  hopping.contact = settings(contact_schema(), "{}");
-  hopping.solver = settings(solver_schema(), "{}");
-  hopping.controller = settings(controller_schema(), "{type: hop}");
   BodyInput resting = hopping;
-  resting.controller = settings(controller_schema(), "{type: rest}");
+  resting.controller = settings(controller_schema(), {});
   const double h = WorldSettings().h;
   const int steps = std::max(kStateInterval, static_cast<int>(std::lround(seconds / h)));
 
