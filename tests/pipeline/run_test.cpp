@@ -301,6 +301,9 @@ struct Interruption {
   int code;
 };
 
+// The names of the tests show it; without this they would show addresses.
+void PrintTo(const Interruption& interruption, std::ostream* out) { *out << interruption.name; }
+
 class InterruptedRun : public testing::TestWithParam<Interruption> {};
 
 TEST_P(InterruptedRun, EndsWithTheSameBytes) {
