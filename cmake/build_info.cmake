@@ -3,7 +3,7 @@
 # In: SOURCE_DIR, OUTPUT, VERSION, COMPILER (identification and flags), LIBRARIES ("name=version" separated by |).
 
 function(hash_sources result)
-  set(text "${COMPILER}")
+  set(text "${COMPILER} ${LIBRARIES}")
   foreach(prefix ${ARGN})
     file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${prefix}*.h ${SOURCE_DIR}/${prefix}*.cpp)
     list(SORT files)
@@ -17,9 +17,9 @@ function(hash_sources result)
   set(${result} ${hash} PARENT_SCOPE)
 endfunction()
 
-hash_sources(meshing common/ meshing/ pipeline/stages/)
-hash_sources(sim common/ sim/ pipeline/stages/)
-hash_sources(render common/ render/ pipeline/stages/ pipeline/camera_path pipeline/video)
+hash_sources(meshing common/ meshing/ pipeline/stages/ pipeline/placement)
+hash_sources(sim common/ sim/ pipeline/stages/ pipeline/placement)
+hash_sources(render common/ render/ pipeline/stages/ pipeline/placement pipeline/camera_path pipeline/video)
 
 set(libraries "")
 string(REPLACE "|" ";" entries "${LIBRARIES}")

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <new>
 
 #include "common/error.h"
@@ -23,6 +24,16 @@ namespace vivify::meshing {
 namespace {
 
 constexpr int kPollMilliseconds = 100;
+constexpr double kWallFactor =
+    10;  // wall time, in limits of processor time, after which a sleeping child ends
+
+// Processor time that a child has used so far; 0 when it is gone.
+double processor_seconds(pid_t child) {
+  clockid_t clock = {};
+  timespec time = {};
+  if (clock_getcpuclockid(child, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 // The first byte of the answer of a guarded child.
 enum class Answer : std::uint8_t { result, our_error, other_error };
@@ -114,13 +125,14 @@ ChildOutcome converse(pid_t child_id, int socket, std::span<const std::byte> req
   using Clock = std::chrono::steady_clock;
   Child child(child_id, socket);
   ChildOutcome outcome;
-  const auto deadline = Clock::now() + std::chrono::duration<double>(std::min(limits.seconds, 1e8));
+  const auto deadline =
+      Clock::now() + std::chrono::duration<double>(kWallFactor * std::min(limits.seconds, 1e7));
   fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
   if (request.empty()) shutdown(socket, SHUT_WR);
   std::vector<std::byte> buffer(1 << 16);
   for (;;) {
     check_stop();
-    if (Clock::now() >= deadline) {
+    if (processor_seconds(child_id) >= limits.seconds || Clock::now() >= deadline) {
       child.end();
       outcome.timed_out = true;
       break;

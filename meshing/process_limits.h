@@ -4,7 +4,7 @@
 namespace vivify::meshing {
 
 struct ProcessLimits {
-  double seconds = 60;      // wall time
+  double seconds = 60;      // processor time: the same work is allowed on a busy machine
   double megabytes = 4096;  // address space beyond what the child has at its start
 };
 

@@ -40,18 +40,22 @@ class FolderLock {
   int fd_ = -1;
 };
 
-// Removes what a killed run was writing (common/file.h); needs the lock.
+// Removes what a killed run was writing (common/file.h), in the folders that vivify makes and nowhere else;
+// needs the lock.
 void remove_unfinished_files(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> unfinished;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
-    const std::string name = entry.path().filename().string();
-    const std::size_t mark = name.rfind(".tmp.");
-    if (mark != name.npos && name.find_first_not_of("0123456789", mark + 5) == name.npos) {
-      unfinished.push_back(entry.path());
-    }
-  }
   std::error_code ignored;
-  for (const std::filesystem::path& path : unfinished) std::filesystem::remove(path, ignored);
+  for (const char* folder : {"", "mesh", "weights", "sim", "sim/frames", "render", ".cache"}) {
+    std::vector<std::filesystem::path> unfinished;
+    for (const auto& entry : std::filesystem::directory_iterator(out / folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      const std::size_t mark = name.rfind(".tmp.");
+      if (mark != name.npos && name.size() > mark + 5 &&
+          name.find_first_not_of("0123456789", mark + 5) == name.npos) {
+        unfinished.push_back(entry.path());
+      }
+    }
+    for (const std::filesystem::path& path : unfinished) std::filesystem::remove(path, ignored);
+  }
 }
 
 StagePlan plan_stage(const Stage& stage, const Job& job, const RunOptions& options, Ledger& ledger) {

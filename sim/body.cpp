@@ -85,26 +85,31 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   v_ = Eigen::VectorXd::Zero(x_.size());
   q_ = Eigen::VectorXd::Zero(model_.rest.free_parameters());
   contact_memory_.resize(static_cast<std::size_t>(model_.contact_points.size()));
-  const ControlledBody controlled{model_.mass, model_.rest.X0, model_.height, settings.gravity.norm(),
+  const ControlledBody controlled{model_.mass, model_.rest.X0, model_.height, -settings.gravity.y(),
                                   settings.h};
   controller_ = make_controller(controlled, input.controller);
 }
 
 StepSolution Body::solve(const StepProblem& problem, int* fallback, std::string* method) {
   const Eigen::VectorXd start = guess(settings_.h);
-  *fallback = 0;
   *method = model_.solver.method;
   StepSolution best =
       find_entry(step_methods(), *method, "step method").solve(problem, q_, start, *workspace_);
   if (best.exact && best.optimal) return best;
 
-  *fallback = 1;
+  *fallback = std::max(*fallback, 1);
+  const StepSolution first = best;
   const std::string other = *method == "sqp" ? "reduced" : "sqp";
   StepSolution second =
       find_entry(step_methods(), other, "step method").solve(problem, q_, start, *workspace_);
   if (second.exact && (!best.exact || second.objective < best.objective)) {
     *method = other;
     best = std::move(second);
+    best.iterations += first.iterations;
+    best.halvings += first.halvings;
+  } else {
+    best.iterations += second.iterations;
+    best.halvings += second.halvings;
   }
   if (best.exact) return best;
 
@@ -139,10 +144,13 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   StepSolution solution;
   int fallback = 0;
   std::string method;
-  for (int pass = 0; pass < kMaxContactPasses; ++pass) {
+  int iterations = 0, halvings = 0;
+  for (int pass = 1;; ++pass) {
     const StepProblem problem(model_, contacts, goals, x_tilde, q_, h);
     solution = solve(problem, &fallback, &method);
-    if (!solution.exact ||
+    iterations += solution.iterations;
+    halvings += solution.halvings;
+    if (!solution.exact || pass == kMaxContactPasses ||
         contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer))
       break;
     contacts =
@@ -161,8 +169,8 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   record.t = static_cast<double>(step) * h;
   record.body = model_.name;
   record.method = method;
-  record.iterations = solution.iterations;
-  record.halvings = solution.halvings;
+  record.iterations = iterations;
+  record.halvings = halvings;
   record.fallback = fallback;
   record.residual_rel = solution.residual;
   record.objective = solution.objective;

@@ -18,7 +18,9 @@ Schema regularizer_schema() {
 
 Schema contact_schema() {
   return object("Contact with colliders.")
-      .field("points", integer("Points of the drawn surface that can touch.").at_least(4).initially(160))
+      .field(
+          "points",
+          integer("Points of the drawn surface that can touch.").at_least(4).at_most(100000).initially(160))
       .field("layer",
              number("Thickness of the contact layer as a share of the body's height: softer when larger.")
                  .above(0)
@@ -40,8 +42,10 @@ Schema solver_schema() {
           boolean(
               "Use the full blocks A, B, C of (13) instead of Gauss–Newton: dearer, seldom fewer iterations.")
               .initially(standard.exact_hessian))
-      .field("max_iterations",
-             integer("Most iterations in one step.").at_least(1).initially(standard.max_iterations))
+      .field("max_iterations", integer("Most iterations in one step.")
+                                   .at_least(1)
+                                   .at_most(1000)
+                                   .initially(standard.max_iterations))
       .field("decrement", number("Stop at this Newton decrement, in units of weight times height.")
                               .above(0)
                               .initially(standard.decrement));

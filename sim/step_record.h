@@ -11,10 +11,10 @@ struct StepRecord {
   long step = 0;
   double t = 0;  // s, at the end of the step
   std::string body;
-  std::string method;       // that made the step: sqp, reduced, or hold (rest shape kept)
-  int iterations = 0;       // of the optimiser
+  std::string method;       // whose solution was kept: sqp, reduced, or hold (rest shape kept)
+  int iterations = 0;       // of the optimiser, over all methods and contact passes
   int halvings = 0;         // damped or shortened trial steps
-  int fallback = 0;         // 0: the chosen method succeeded; 1: the other method; 2: rest shape held
+  int fallback = 0;         // 0: the chosen method converged; 1: the other was tried too; 2: rest shape held
   double residual_rel = 0;  // ‖c‖∞ over the weight
   double objective = 0;     // J
   double p_norm = 0;        // m

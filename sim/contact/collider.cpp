@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <unsupported/Eigen/BVH>
 #include <vector>
 
@@ -75,13 +76,36 @@ struct Collider::Tree {
   std::vector<Eigen::Vector3d> face_normals;                    // unit
   std::vector<Eigen::Vector3d> corner_normals;                  // angle weighted, unit
   std::map<std::pair<int, int>, Eigen::Vector3d> edge_normals;  // sum of the two face normals
+  std::set<std::pair<int, int>> rim_edges;                      // of one face only
+  std::set<int> rim_corners;
 };
+
+namespace {
+
+// Vertices in the same place become one: assets split them where texture coordinates or parts meet.
+void join_equal_vertices(TriangleMesh& surface) {
+  std::map<std::array<double, 3>, int> first;
+  std::vector<int> joined(static_cast<std::size_t>(surface.V.rows()));
+  for (int v = 0; v < surface.V.rows(); ++v) {
+    joined[v] = first.emplace(std::array{surface.V(v, 0), surface.V(v, 1), surface.V(v, 2)}, v).first->second;
+  }
+  for (Eigen::Index f = 0; f < surface.F.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) surface.F(f, k) = joined[surface.F(f, k)];
+  }
+}
+
+std::pair<int, int> edge_of(const Triangles& F, int face, int corner) {
+  return std::minmax({F(face, corner), F(face, (corner + 1) % 3)});
+}
+
+}  // namespace
 
 Collider::Collider(std::string name, TriangleMesh surface, double friction)
     : name_(std::move(name)),
       surface_(std::move(surface)),
       friction_(friction),
       tree_(std::make_unique<Tree>()) {
+  join_equal_vertices(surface_);
   const Triangles& F = surface_.F;
   if (F.rows() == 0) throw Error(ErrorKind::geometry, "collider '" + name_ + "' has no triangles");
   std::vector<int> faces;
@@ -106,13 +130,19 @@ Collider::Collider(std::string name, TriangleMesh surface, double friction)
       const Eigen::Vector3d to_last = (corner[(k + 2) % 3] - corner[k]).normalized();
       const double angle = std::acos(std::clamp(to_next.dot(to_last), -1.0, 1.0));
       tree_->corner_normals[F(f, k)] += angle * normal;
-      const auto edge = std::minmax({F(f, k), F(f, (k + 1) % 3)});
-      const auto [it, inserted] = tree_->edge_normals.try_emplace({edge.first, edge.second}, normal);
-      if (!inserted) it->second += normal;
+      const std::pair<int, int> edge = edge_of(F, f, k);
+      const auto [it, inserted] = tree_->edge_normals.try_emplace(edge, normal);
+      if (inserted) {
+        tree_->rim_edges.insert(edge);
+      } else {
+        it->second += normal;
+        tree_->rim_edges.erase(edge);
+      }
     }
   }
   if (faces.empty())
     throw Error(ErrorKind::geometry, "every triangle of collider '" + name_ + "' is degenerate");
+  for (const auto& [a, b] : tree_->rim_edges) tree_->rim_corners.insert({a, b});
   tree_->hierarchy = Eigen::KdBVH<double, 3, int>(faces.begin(), faces.end(), boxes.begin(), boxes.end());
 }
 
@@ -126,15 +156,19 @@ SurfacePoint Collider::nearest(const Eigen::Vector3d& point) const {
   const int f = query.best_face;
   const int feature = query.best.feature;
   Eigen::Vector3d pseudo_normal = tree_->face_normals[f];
+  bool rim = false;
   if (feature >= 4) {
-    const auto edge = std::minmax({surface_.F(f, feature - 4), surface_.F(f, (feature - 3) % 3)});
-    pseudo_normal = tree_->edge_normals.at({edge.first, edge.second});
+    const std::pair<int, int> edge = edge_of(surface_.F, f, feature - 4);
+    pseudo_normal = tree_->edge_normals.at(edge);
+    rim = tree_->rim_edges.contains(edge);
   } else if (feature >= 1) {
-    pseudo_normal = tree_->corner_normals[surface_.F(f, feature - 1)];
+    const int corner = surface_.F(f, feature - 1);
+    pseudo_normal = tree_->corner_normals[corner];
+    rim = tree_->rim_corners.contains(corner);
   }
   const Eigen::Vector3d offset = point - query.best.position;
   const double length = offset.norm();
-  const double sign = offset.dot(pseudo_normal) < 0 ? -1 : 1;
+  const double sign = !rim && offset.dot(pseudo_normal) < 0 ? -1 : 1;  // there is no inside beyond a rim
   // On a face the offset is along the face normal, which is exact even at distance zero.
   Eigen::Vector3d normal = tree_->face_normals[f];
   if (feature != 0)

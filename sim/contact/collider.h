@@ -20,7 +20,7 @@ class Collider {
  public:
   // `surface` is outward oriented; it need not be closed (a table top may be a single quad). `friction` is
   // Coulomb's μ and may be infinite: the unlimited springs of the paper. Throws Error(geometry) for an empty
-  // or degenerate surface.
+  // or degenerate surface. Vertices in the same place are one; an open surface has no inside beyond its rim.
   Collider(std::string name, TriangleMesh surface, double friction);
   ~Collider();
   Collider(Collider&&) noexcept;

@@ -19,7 +19,7 @@ struct ControlledBody {
   const Eigen::VectorXd& mass;  // #V, kg
   const Eigen::VectorXd& rest;  // 3 #V, m, as placed in the scene
   double height;                // of the body at rest, m
-  double gravity;               // m/s²
+  double gravity;               // downwards, m/s²
   double h;                     // step size, s
 };
 

@@ -237,7 +237,7 @@ TEST(Run, OneFrameAloneIsTheSameAsInTheRange) {
             read_text_file(scene.out("range") / "render/tiny.0004.exr"));
 }
 
-TEST(Run, TurningTheHeadingTurnsTheMotion) {
+TEST(Run, SettingsOnTheCommandLineReachTheSimulation) {
   const TinyScene scene;
   ASSERT_EQ(run(scene, scene.out("x"), {}, {}, "simulate").code, 0);
   ASSERT_EQ(

@@ -119,6 +119,22 @@ TEST_P(TeacupScene, HopsAlongItsHeadingAndObeysTheLaws) {
   EXPECT_LE(steps.largest("internal_force_sum_n"), 1e-9 * weight);
   EXPECT_LE(steps.largest("internal_torque_sum_nm"), 1e-9 * weight * height);
 
+  // The drawn cup, every vertex of it, never sinks visibly into the table.
+  const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
+  const RowMatrixXd weights = mesh.matrix("/embedding/weights");
+  const RowMatrixXi elements = mesh.int_matrix("/elements");
+  double lowest = 0;
+  for (int frame = 1; frame <= 96; ++frame) {
+    const std::string number = std::to_string(10000 + frame).substr(1);
+    const RowMatrixXd x = Hdf5Reader(out / ("sim/frames/" + number + ".h5")).matrix("/bodies/cup/x");
+    for (Eigen::Index i = 0; i < tet.size(); ++i) {
+      double y = 0;
+      for (int k = 0; k < 4; ++k) y += weights(i, k) * x(elements(tet[i], k), 1);
+      lowest = std::min(lowest, y);
+    }
+  }
+  EXPECT_GE(lowest, -0.01 * height);
+
   // In flight the centre of mass follows the parabola of implicit Euler, whatever the rest shape does.
   for (const Flight& hop : hops) {
     for (std::size_t i = hop.first; i <= hop.last; ++i) {

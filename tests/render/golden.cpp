@@ -1,5 +1,7 @@
 #include "tests/render/golden.h"
 
+#include <unistd.h>
+
 #include <cpuid.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +34,7 @@ std::string processor_family() {
 }
 
 fs::path results() {
-  const fs::path path = fs::temp_directory_path() / "vivify_goldens";
+  const fs::path path = fs::temp_directory_path() / ("vivify_goldens." + std::to_string(::getuid()));
   make_folder(path);
   return path;
 }

@@ -126,6 +126,38 @@ TEST(Collider, ExactlyOnTheSurfaceTheNormalIsStillRight) {
   EXPECT_GT(edge.normal.x() + edge.normal.y(), 0.9);
 }
 
+TEST(Collider, AnOpenSurfaceHasNoInsideBeyondItsRim) {
+  TriangleMesh quad;
+  quad.V.resize(4, 3);
+  quad.V << -1, 0, -1, -1, 0, 1, 1, 0, 1, 1, 0, -1;
+  quad.F.resize(2, 3);
+  quad.F << 0, 1, 2, 0, 2, 3;
+  const Collider table("table", quad, 1);
+  EXPECT_NEAR(table.nearest({0.3, -0.2, 0.1}).distance, -0.2, 1e-12);  // under the table, not beside it
+  EXPECT_NEAR(table.nearest({1.3, -0.4, 0}).distance, 0.5, 1e-12);
+  EXPECT_NEAR(table.nearest({2, -1, 2}).distance, std::sqrt(3), 1e-12);
+}
+
+TEST(Collider, VerticesSplitAtASeamMakeNoRim) {
+  // The box again, but every triangle has vertices of its own.
+  const TriangleMesh whole = surface_of(standing_box());
+  TriangleMesh split;
+  split.V.resize(3 * whole.F.rows(), 3);
+  split.F.resize(whole.F.rows(), 3);
+  for (Eigen::Index f = 0; f < whole.F.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      split.V.row(3 * f + k) = whole.V.row(whole.F(f, k));
+      split.F(f, k) = static_cast<int>(3 * f + k);
+    }
+  }
+  const Collider a("whole", whole, 1), b("split", split, 1);
+  CounterRng rng(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vector p = random_vector(3, 1, rng);
+    EXPECT_NEAR(a.nearest(p).distance, b.nearest(p).distance, 1e-12);
+  }
+}
+
 TEST(Collider, RefusesEmptyAndDegenerateSurfaces) {
   TriangleMesh flat_triangle{Points::Zero(3, 3), Triangles(1, 3), {}, {}, {}};
   flat_triangle.F << 0, 1, 2;

@@ -71,6 +71,37 @@ TEST(Hop, PhasesFollowOneAnother) {
   EXPECT_NEAR(hopper.advance("crouch", true), 0.25 / 0.02, 2);
 }
 
+TEST(Hop, AsksNothingInTheAirBeforeItHasLanded) {
+  Hopper hopper;
+  for (int step = 0; step < 100; ++step) EXPECT_TRUE(hopper.goals(false).empty());
+  hopper.goals(true);
+  EXPECT_EQ(hopper.controller->phase(), "crouch");
+  EXPECT_TRUE(hopper.goals(false).empty()) << "a foot that lifts in the crouch";
+}
+
+TEST(Hop, CrouchesOnWhateverGroundItStands) {
+  Hopper hopper("{type: hop, crouch_depth: 0.2, crouch_s: 0.25}");
+  Vector raised = hopper.rest;
+  for (Eigen::Index i = 1; i < raised.size(); i += 3) raised[i] += 3;
+  double lowest = 10;
+  const auto goals = [&] {
+    return hopper.controller->goals({raised, Vector::Zero(raised.size()), hopper.mass.sum() * 9.81});
+  };
+  goals();
+  while (hopper.controller->phase() == "crouch") {
+    for (const Goal& goal : goals()) {
+      if (goal.kp > 0) lowest = std::min(lowest, goal.sx);
+    }
+  }
+  EXPECT_NEAR(lowest, 3 + 0.5 - 0.2, 1e-3);
+}
+
+TEST(Hop, NeedsGravity) {
+  Hopper hopper;
+  const ControlledBody floating{hopper.mass, hopper.rest, 1, 0, 0.02};
+  EXPECT_THROW(make_controller(floating, settings(controller_schema(), "{type: hop}")), Error);
+}
+
 TEST(Hop, TriesAgainWhenItDoesNotLeaveTheGround) {
   Hopper hopper;
   hopper.goals(true);

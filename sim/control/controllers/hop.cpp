@@ -51,18 +51,18 @@ class HopController final : public Controller {
     const double cycle = crouch_s_ + 0.5 * thrust_s_ + flight + land_s_;
     speed_ = settings["pace"].as_number() * cycle / (flight + 0.25 * thrust_s_);
     rest_centre_ = centre_of_mass(body.mass, body.rest);
+    rest_rise_ = rest_centre_.y() - lowest_vertex(body.rest);
+    time_ = land_s_;
   }
 
   std::vector<Goal> goals(const Observation& now) override {
-    if (!started_) {
-      started_ = true;
-      enter(kCrouch, now);
-    }
     const bool standing = now.load > kTouchLoad * body_.mass.sum() * body_.gravity;
     advance_phase(standing, now);
     time_ += body_.h;
 
     std::vector<Goal> goals;
+    if (!standing && phase_ != kThrust)
+      return goals;  // in the air no internal force moves the centre of mass
     const double kd = std::sqrt(weight_ * body_.mass.sum()), soft = std::sqrt(kSoftWeight) * kd;
     switch (phase_) {
       case kCrouch: {
@@ -98,19 +98,18 @@ class HopController final : public Controller {
   std::string phase() const override { return kPhaseNames[phase_]; }
 
   Eigen::VectorXd state() const override {
-    Eigen::VectorXd state(11);
-    state << started_, phase_, time_, start_, start_rate_, ground_height_, learnt_;
+    Eigen::VectorXd state(10);
+    state << phase_, time_, start_, start_rate_, ground_height_, learnt_;
     return state;
   }
 
   void restore(const Eigen::VectorXd& state) override {
-    started_ = state[0] != 0;
-    phase_ = static_cast<Phase>(static_cast<int>(state[1]));
-    time_ = state[2];
-    start_ = state.segment<3>(3);
-    start_rate_ = state[6];
-    ground_height_ = state[7];
-    learnt_ = state.segment<3>(8);
+    phase_ = static_cast<Phase>(static_cast<int>(state[0]));
+    time_ = state[1];
+    start_ = state.segment<3>(2);
+    start_rate_ = state[5];
+    ground_height_ = state[6];
+    learnt_ = state.segment<3>(7);
   }
 
  private:
@@ -160,7 +159,12 @@ class HopController final : public Controller {
     time_ = 0;
     start_ = centre_of_mass(body_.mass, now.x);
     start_rate_ = centre_of_mass(body_.mass, now.v).y();
-    if (phase == kCrouch && ground_height_ == 0) ground_height_ = rest_centre_.y();
+    // The ground may be anywhere: the centre stands above the lowest vertex as it does at rest.
+    if (phase == kCrouch || phase == kLand) ground_height_ = lowest_vertex(now.x) + rest_rise_;
+  }
+
+  static double lowest_vertex(const Eigen::VectorXd& x) {
+    return Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<3>>(x.data() + 1, x.size() / 3).minCoeff();
   }
 
   void advance_phase(bool standing, const Observation& now) {
@@ -212,10 +216,10 @@ class HopController final : public Controller {
   bool face_heading_ = false;
   double heading_ = 0, take_off_ = 0, speed_ = 0;
   Eigen::Vector3d rest_centre_;
+  double rest_rise_ = 0;  // of the centre of mass above the lowest vertex at rest, m
 
-  bool started_ = false;
-  Phase phase_ = kCrouch;
-  double time_ = 0;                                   // since the phase began, s
+  Phase phase_ = kLand;  // a body may start in the air; one that stands crouches at once
+  double time_ = 0;      // since the phase began, s
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();   // centre of mass when the phase began, m
   double start_rate_ = 0;                             // its vertical velocity then, m/s
   Eigen::Vector3d learnt_ = Eigen::Vector3d::Zero();  // added to the take-off velocity, m/s
@@ -249,6 +253,10 @@ Schema hop_controller_schema() {
 }
 
 std::unique_ptr<Controller> make_hop_controller(const ControlledBody& body, const Value& settings) {
+  if (!(body.gravity > 0)) {
+    throw Error(ErrorKind::usage, "a hop needs gravity that points down (-y)",
+                "change gravity or the controller", settings.where());
+  }
   return std::make_unique<HopController>(body, settings);
 }
 
