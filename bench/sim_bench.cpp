@@ -121,7 +121,8 @@ void make_box(BodyInput& input) {
   input.contact_points = select_contact_points(input.rest.V, vertices, weights, 80);
 }
 
-void load_body(BodyInput& input, const std::filesystem::path& out) {
+// The first body of a run, and the step size of its scene.
+WorldSettings load_body(BodyInput& input, const std::filesystem::path& out) {
   std::vector<Error> errors;
   const std::string file = (out / "scene.resolved.yaml").string();
   const ConfigNode scene = parse_yaml(read_text_file(file), file, errors);
@@ -143,6 +144,10 @@ void load_body(BodyInput& input, const std::filesystem::path& out) {
   input.contact_points =
       select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"),
                             static_cast<int>(input.contact["points"].as_integer()));
+  const ConfigNode& frames = entry(scene, "frames");
+  WorldSettings world;
+  world.h = 1 / (std::stod(entry(frames, "fps").scalar) * std::stod(entry(frames, "steps_per_frame").scalar));
+  return world;
 }
 
 std::vector<Collider> ground(const BodyInput& input) {
@@ -167,8 +172,8 @@ struct Run {
   double seconds = 0;
 };
 
-Run run(const BodyInput& input, int steps) {
-  World world({input}, ground(input), {});
+Run run(const BodyInput& input, const WorldSettings& settings, int steps) {
+  World world({input}, ground(input), settings);
   Run result;
   for (int step = 0; step < steps; ++step) {
     result.step_seconds.push_back(seconds_of([&] { world.step(); }));
@@ -245,28 +250,29 @@ Parts time_parts(const BodyModel& body, const std::vector<Collider>& colliders, 
 int bench(int argc, char** argv) {
   const double seconds = argc > 2 ? std::atof(argv[2]) : 2;
   BodyInput hopping;
+  WorldSettings world;
   if (argc > 1) {
-    load_body(hopping, argv[1]);
+    world = load_body(hopping, argv[1]);
   } else {
     make_box(hopping);
   }
   BodyInput resting = hopping;
   resting.controller = settings(controller_schema(), {});
-  const double h = WorldSettings().h;
+  const double h = world.h;
   const int steps = std::max(kStateInterval, static_cast<int>(std::lround(seconds / h)));
 
   std::vector<double> controlled, passive, ratio;
   Run first;
   for (int alternation = 0; alternation < kAlternations; ++alternation) {
-    Run hop = run(hopping, steps);
-    const Run rest = run(resting, steps);
+    Run hop = run(hopping, world, steps);
+    const Run rest = run(resting, world, steps);
     controlled.push_back(hop.seconds / (steps * h));
     passive.push_back(rest.seconds / (steps * h));
     ratio.push_back(mean(hop.step_seconds) / mean(rest.step_seconds));
     if (alternation == 0) first = std::move(hop);
   }
 
-  const BodyModel body = make_body_model(hopping, {});
+  const BodyModel body = make_body_model(hopping, world);
   const std::vector<Collider> colliders = ground(hopping);
   std::vector<double> iteration, factorisation, assembly, regularizer, over;
   for (const State& state : first.states) {

@@ -8,7 +8,6 @@
 
 #include "common/error.h"
 #include "common/log.h"
-#include "common/mesh_io.h"
 #include "common/text.h"
 #include "meshing/byte_stream.h"
 #include "meshing/collapse.h"
@@ -138,15 +137,11 @@ CageSettings cage_settings(const Value& value) {
   CageSettings settings;
   settings.vertices = static_cast<int>(value["vertices"].as_integer());
   settings.clearance = value["clearance"].as_number();
-  if (value.has("file")) settings.file = value["file"].as_string();
   return settings;
 }
 
 TriangleMesh make_cage(const Points& must_enclose, const TriangleMesh& surface,
                        const CageSettings& settings) {
-  if (!settings.file.empty()) {
-    return validate_cage(without_duplicates(read_mesh(settings.file)), must_enclose, 0, settings.file);
-  }
   const Points enclosed = join(must_enclose, surface.V);
   const double diagonal = bounding_box(enclosed).diagonal();
   const double clearance = settings.clearance * diagonal;
@@ -185,6 +180,7 @@ TriangleMesh validate_cage(TriangleMesh cage, const Points& must_enclose, double
   if (cage.F.minCoeff() < 0 || cage.F.maxCoeff() >= cage.V.rows()) {
     fail("a face refers to a vertex that does not exist", "repair the mesh");
   }
+  cage = without_duplicates(cage);
   const std::string topology = topology_problem(cage);
   if (!topology.empty()) fail(topology, "close it and orient its faces alike");
   const auto crossings = self_intersections(cage);

@@ -31,6 +31,17 @@ std::vector<int> connected_vertices(const TriangleMesh& surface) {
   return parent;
 }
 
+// The given faces of a surface, with the vertices they use.
+TriangleMesh only(const TriangleMesh& surface, const std::vector<Eigen::Index>& faces) {
+  TriangleMesh part;
+  part.V = surface.V;
+  part.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    part.F.row(static_cast<Eigen::Index>(i)) = surface.F.row(faces[i]);
+  drop_unused_vertices(part);
+  return part;
+}
+
 }  // namespace
 
 TriangleMesh main_body(const TriangleMesh& surface, std::vector<std::string>& notes) {
@@ -43,14 +54,8 @@ TriangleMesh main_body(const TriangleMesh& surface, std::vector<std::string>& no
   std::vector<TriangleMesh> parts;
   std::vector<double> volumes;
   for (const auto& [vertex, faces] : faces_of_part) {
-    TriangleMesh part;
-    part.V = surface.V;
-    part.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      part.F.row(static_cast<Eigen::Index>(i)) = surface.F.row(faces[i]);
-    drop_unused_vertices(part);
-    volumes.push_back(std::abs(signed_volume(part)));
-    parts.push_back(std::move(part));
+    parts.push_back(only(surface, faces));
+    volumes.push_back(std::abs(signed_volume(parts.back())));
   }
   const std::size_t largest =
       static_cast<std::size_t>(std::max_element(volumes.begin(), volumes.end()) - volumes.begin());
@@ -75,15 +80,9 @@ TriangleMesh main_body(const TriangleMesh& surface, std::vector<std::string>& no
   }
   if (left_out == 0) return surface;
   std::sort(kept.begin(), kept.end());
-  TriangleMesh body;
-  body.V = surface.V;
-  body.F.resize(static_cast<Eigen::Index>(kept.size()), 3);
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    body.F.row(static_cast<Eigen::Index>(i)) = surface.F.row(kept[i]);
-  drop_unused_vertices(body);
   notes.push_back("left " + std::to_string(left_out) + " small separate part" + (left_out > 1 ? "s" : "") +
                   " out of the simulation: drawn, and carried along by the body");
-  return body;
+  return only(surface, kept);
 }
 
 }  // namespace vivify::meshing

@@ -16,18 +16,15 @@ constexpr double kTrialTolerance = 1e-7;
 StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
                            StepWorkspace& workspace) {
   const BodyModel& body = problem.body();
-  StepSolution solution;
-  solution.rest = problem.rest_point(q, true);
-  ForwardResult start = forward_step(problem, solution.rest, x, kTrialTolerance, workspace);
-  solution.forward_iterations = start.iterations;
-  solution.at = std::move(start.at);
+  bool feasible_start = false;
+  StepSolution solution = start_feasibly(problem, q, x, kTrialTolerance, workspace, &feasible_start);
   double objective = problem.objective(solution.at.x, solution.rest);
 
   const double unit = body.weight * body.height;
   double mu = 0;
   int small_gains = 0;
   bool factorized = false;  // the workspace holds D of the solution
-  while (start.converged && solution.iterations < body.solver.max_iterations) {
+  while (feasible_start && solution.iterations < body.solver.max_iterations) {
     Eigen::VectorXd dq, dx, gradient;
     bool accepted = false;
     const double before = objective;

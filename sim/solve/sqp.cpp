@@ -17,11 +17,7 @@ constexpr double kMeritMargin = 1.2;
 StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
                        StepWorkspace& workspace) {
   const BodyModel& body = problem.body();
-  StepSolution solution;
-  solution.rest = problem.rest_point(q, true);
-  ForwardResult start = forward_step(problem, solution.rest, x, kStartTolerance, workspace);
-  solution.forward_iterations = start.iterations;
-  solution.at = std::move(start.at);
+  StepSolution solution = start_feasibly(problem, q, x, kStartTolerance, workspace);
 
   const double unit = body.weight * body.height;
   const double feasible = 10 * kStartTolerance * body.weight;

@@ -25,6 +25,17 @@ Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
   return dq;
 }
 
+StepSolution start_feasibly(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
+                            double tolerance, StepWorkspace& workspace, bool* converged) {
+  StepSolution solution;
+  solution.rest = problem.rest_point(q, true);
+  ForwardResult start = forward_step(problem, solution.rest, x, tolerance, workspace);
+  solution.forward_iterations = start.iterations;
+  solution.at = std::move(start.at);
+  if (converged != nullptr) *converged = start.converged;
+  return solution;
+}
+
 void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace,
                     bool factorized) {
   const ForwardResult finish =

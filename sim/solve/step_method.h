@@ -47,6 +47,9 @@ inline constexpr int kMaxStepHalvings = 10;
 double raise_damping(double mu);  // after a refused trial
 double lower_damping(double mu);  // after a first trial that was accepted
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq);
+// A feasible start: the forward step of q from x. `converged` is told whether it reached the tolerance.
+StepSolution start_feasibly(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
+                            double tolerance, StepWorkspace& workspace, bool* converged = nullptr);
 // Ends a solution with an exact forward step from its x. `factorized`: the workspace holds D of the solution.
 void finish_exactly(const StepProblem& problem, StepSolution& solution, StepWorkspace& workspace,
                     bool factorized = false);

@@ -222,28 +222,26 @@ TEST(Cage, FromAFileKeepsItsShape) {
   }
   write_file_atomic(file, text);
   const TriangleMesh character = shapes::sphere({0.5, 0.5, 1}, 0.3, 2);
-  const TriangleMesh cage = make_cage(character.V, character, {.file = file.string()});
+  const TriangleMesh cage = validate_cage(read_mesh(file), character.V);
   EXPECT_EQ(cage.V.rows(), 8);
   EXPECT_EQ(cage.F.rows(), 12);
   EXPECT_NEAR(signed_volume(cage), 2, 1e-6);
 
   const TriangleMesh larger = shapes::sphere({0.5, 0.5, 1}, 0.6, 2);
-  const std::string message = message_of([&] { make_cage(larger.V, larger, {.file = file.string()}); });
-  EXPECT_NE(message.find(file.string()), std::string::npos) << message;
+  const std::string message = message_of([&] { validate_cage(read_mesh(file), larger.V, 0, "my cage"); });
+  EXPECT_EQ(message.find("my cage"), 0u) << message;
   EXPECT_NE(message.find("not strictly inside"), std::string::npos) << message;
   std::filesystem::remove(file);
 }
 
 TEST(Cage, SettingsComeFromTheSchema) {
   std::vector<Error> errors;
-  const ConfigNode node = parse_yaml("{vertices: 20, file: my_cage.obj}", "scene.yaml", errors);
+  const ConfigNode node = parse_yaml("{vertices: 20}", "scene.yaml", errors);
   const CageSettings settings = cage_settings(resolve(cage_schema(), node, errors));
   ASSERT_TRUE(errors.empty());
   EXPECT_EQ(settings.vertices, 20);
-  EXPECT_EQ(settings.file, "my_cage.obj");
   EXPECT_EQ(settings.clearance, CageSettings().clearance);
   const ConfigNode defaults = parse_yaml("{}", "scene.yaml", errors);
-  EXPECT_EQ(cage_settings(resolve(cage_schema(), defaults, errors)).file, "");
   EXPECT_EQ(cage_settings(resolve(cage_schema(), defaults, errors)).vertices, 8);
 }
 
