@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <tuple>
 
 #include "common/config.h"
 #include "common/file.h"
@@ -140,11 +141,16 @@ class SemanticCheck {
  public:
   SemanticCheck(const Scene& scene, std::vector<Error>& errors) : scene_(scene), errors_(errors) {}
 
-  void run(const Schema& schema) {
+  // Files can be looked for beside settings that are wrong.
+  void files(const Schema& schema) {
     walk(schema, scene_.settings, "",
          [&](const Schema& setting, const Value& value, const std::string& name) {
            if (setting.kind == Schema::Kind::path && !value.is_null()) file_exists(value, name);
          });
+  }
+
+  // What ties settings to one another; needs all of them.
+  void references() {
     names();
     looks();
     camera();
@@ -286,10 +292,18 @@ std::optional<Scene> load_scene(const std::filesystem::path& file, const std::ve
   scene.folder = file.parent_path();
   scene.name = file.stem().string();
   scene.settings = resolve(schema, root, errors);
-  if (errors.size() > errors_before) return std::nullopt;
-
-  SemanticCheck(scene, errors).run(schema);
-  if (errors.size() > errors_before) return std::nullopt;
+  SemanticCheck check(scene, errors);
+  const bool settings_are_whole = errors.size() == errors_before;
+  check.files(schema);
+  if (settings_are_whole) check.references();
+  if (errors.size() > errors_before) {
+    std::stable_sort(errors.begin() + static_cast<std::ptrdiff_t>(errors_before), errors.end(),
+                     [](const Error& a, const Error& b) {
+                       return std::tuple(a.where().line, a.where().column) <
+                              std::tuple(b.where().line, b.where().column);
+                     });
+    return std::nullopt;
+  }
 
   const Value& frames = scene.settings["frames"];
   scene.fps = static_cast<int>(frames["fps"].as_integer());

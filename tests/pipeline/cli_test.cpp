@@ -204,9 +204,11 @@ TEST(Check, ReportsAllErrorsAtOnce) {
   scene.change("density: 100", "density: -3");
   scene.change("type: hop,", "type: hop, heihgt: 1,");
   scene.change("spp: 1", "spp: 0");
+  scene.change("mesh: ball.obj", "mesh: boll.obj");
   const Outcome outcome = vivify({"check", scene.file().string()});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 4) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 5) << outcome.err;
+  EXPECT_LT(outcome.err.find("boll.obj"), outcome.err.find("density")) << "in the order of the file";
 }
 
 TEST(Check, ReportsAllFilesAtOnce) {
