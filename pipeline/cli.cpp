@@ -154,8 +154,7 @@ int run_command_line(int argc, char** argv) {
   try {
     check_processor();
     install_stop_handlers();
-    // A full disk or a reader that went away is an error of write(), not the death of the process.
-    std::signal(SIGXFSZ, SIG_IGN);
+    // A reader that went away is an error of write(), not the death of the process.
     std::signal(SIGPIPE, SIG_IGN);
     return CommandLine().run(argc, argv);
   } catch (const Error& error) {

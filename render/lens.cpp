@@ -1,8 +1,6 @@
 #include "render/lens.h"
 
 #include <Eigen/Geometry>
-
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "common/error.h"
