@@ -107,18 +107,18 @@ void make_box(BodyInput& input) {
       }
     }
   }
-  input.rest.T =
+  input.rest.E =
       Eigen::Map<const Tetrahedra>(corners.data(), static_cast<Eigen::Index>(corners.size() / 4), 4);
-  Tetrahedra vertices(120, 4);
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights(120, 4);
+  RowMatrixXi vertices(120, 4);
+  RowMatrixXd weights(120, 4);
   for (int v = 0; v < 120; ++v) {
     int t = 0, c = 0;
-    while (input.rest.T(t, c) != v) (c == 3) ? (c = 0, ++t) : ++c;
-    vertices.row(v) = input.rest.T.row(t);
+    while (input.rest.E(t, c) != v) (c == 3) ? (c = 0, ++t) : ++c;
+    vertices.row(v) = input.rest.E.row(t);
     weights.row(v).setZero();
     weights(v, c) = 1;
   }
-  input.contact_points = select_contact_points(input.rest.V, vertices, weights, 80);
+  input.contact_points = select_contact_points(input.rest.V, vertices, weights, 3, 80);
 }
 
 // The first body of a run, and the step size of its scene.
@@ -136,13 +136,13 @@ WorldSettings load_body(BodyInput& input, const std::filesystem::path& out) {
   input.controller = settings(controller_schema(), entry(body, "controller"));
   const Hdf5Reader mesh(out / "mesh" / (input.name + ".h5"));
   input.rest.V = mesh.matrix("/X0");
-  input.rest.T = mesh.int_matrix("/elements");
+  input.rest.E = mesh.int_matrix("/elements");
   input.cage_weights = Hdf5Reader(out / "weights" / (input.name + ".h5")).matrix("/weights");
   const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
-  Tetrahedra corners(tet.size(), 4);
-  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.T.row(tet[i]);
+  RowMatrixXi corners(tet.size(), 4);
+  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.E.row(tet[i]);
   input.contact_points =
-      select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"),
+      select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"), 3,
                             static_cast<int>(input.contact["points"].as_integer()));
   const ConfigNode& frames = entry(scene, "frames");
   WorldSettings world;
@@ -181,7 +181,7 @@ Run run(const BodyInput& input, const WorldSettings& settings, int steps) {
     result.iterations.push_back(world.records().back().iterations);
     const Body& body = world.body(0);
     if (step % kStateInterval == kStateInterval - 1) {
-      result.states.push_back({body.x(), body.v(), body.model().rest.basis.transpose() * body.p()});
+      result.states.push_back({body.x(), body.v(), body.model().rest->basis().transpose() * body.p()});
     }
   }
   return result;
@@ -204,7 +204,7 @@ Parts time_parts(const BodyModel& body, const std::vector<Collider>& colliders, 
     wanted.push_back({spin_weights(body.mass, state.x, direction), 0, std::sqrt(body.mass.sum()), 0, 0});
   }
   const Goals goals = make_goals(wanted, state.x, h);
-  const StepProblem problem(body, contacts, goals, state.x + h * state.v, state.q, h);
+  const StepProblem problem(body, contacts, goals, state.x, state.x + h * state.v, state.q, h);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(state.x.size());
   Eigen::MatrixXd rhs(zero.size(), goals.size() + 2);
   rhs << goals.G.transpose(), zero, zero;
@@ -288,9 +288,9 @@ int bench(int argc, char** argv) {
   const double listed = share(assembly) + share(regularizer) + share(factorisation);
 
   std::printf("body                              %s\n", argc > 1 ? argv[1] : "box");
-  std::printf("degrees of freedom, parameters    %d, %d (%d free)\n", body.dofs(), body.rest.parameters(),
-              body.rest.free_parameters());
-  std::printf("elements, contact points          %d, %d\n", static_cast<int>(body.mesh.T.rows()),
+  std::printf("degrees of freedom, parameters    %d, %d (%d free)\n", body.dofs(), body.rest->parameters(),
+              body.rest->free_parameters());
+  std::printf("elements, contact points          %d, %d\n", static_cast<int>(body.mesh.E.rows()),
               body.contact_points.size());
   std::printf("steps of 1/%.0f s                   %d, medians of %d alternations\n", 1 / h, steps,
               kAlternations);

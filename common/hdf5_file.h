@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "common/file.h"
+#include "common/matrix.h"
 
 namespace vivify {
-
-using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using RowMatrixXi = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Collects datasets and attributes, then writes them as one file. Paths are absolute ("/bodies/cup/x"); groups on the
 // way are made. A vector is a column: #V by 1 is stored as #V.

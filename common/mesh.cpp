@@ -34,11 +34,38 @@ Eigen::VectorXd tet_volumes(const TetMesh& mesh) {
   return volumes;
 }
 
-Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density) {
-  const Eigen::VectorXd volumes = tet_volumes(mesh);
+SimMesh sim_mesh(const TetMesh& mesh) { return {mesh.V, mesh.T}; }
+
+Eigen::VectorXd element_sizes(const SimMesh& mesh) {
+  Eigen::VectorXd sizes(mesh.E.rows());
+  for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+    const auto edge = [&](int k) -> Eigen::Vector3d {
+      Eigen::Vector3d d = Eigen::Vector3d::Zero();
+      d.head(mesh.V.cols()) = (mesh.V.row(mesh.E(e, k)) - mesh.V.row(mesh.E(e, 0))).transpose();
+      return d;
+    };
+    switch (mesh.element_points()) {
+      case 2:
+        sizes[e] = edge(1).norm();
+        break;
+      case 3: {
+        const Eigen::Vector3d doubled = edge(1).cross(edge(2));
+        sizes[e] = (mesh.dimension() == 2 ? doubled.z() : doubled.norm()) / 2;
+        break;
+      }
+      default:
+        sizes[e] = edge(1).dot(edge(2).cross(edge(3))) / 6;
+    }
+  }
+  return sizes;
+}
+
+Eigen::VectorXd lumped_mass(const SimMesh& mesh, const Eigen::VectorXd& element_mass) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.V.rows());
-  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-    for (int k = 0; k < 4; ++k) mass[mesh.T(t, k)] += density * volumes[t] / 4;
+  for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+    for (int k = 0; k < mesh.element_points(); ++k) {
+      mass[mesh.E(e, k)] += element_mass[e] / mesh.element_points();
+    }
   }
   return mass;
 }

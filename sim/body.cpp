@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/registry.h"
+#include "common/text.h"
 #include "sim/contact/contact_points.h"
 #include "sim/control/rigid_motion.h"
 #include "sim/settings.h"
@@ -17,19 +18,27 @@ namespace {
 constexpr int kMaxContactPasses = 3;     // solves of one step while contact planes still move
 constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
 constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of force even where there is none
+constexpr double kLeastHeight = 0.2;     // of the diagonal: the unit of length of bodies that lie flat
 constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
+constexpr int kMaxStepSplits = 4;        // a step that cannot be solved is cut in halves so many times
 
-Eigen::VectorXd flatten(const Points& V) { return Eigen::Map<const Eigen::VectorXd>(V.data(), V.size()); }
+RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
+  return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d);
+}
+Eigen::VectorXd flatten(const RowMatrixXd& V) {
+  return Eigen::Map<const Eigen::VectorXd>(V.data(), V.size());
+}
 
-Points unflatten(const Eigen::VectorXd& x) { return Eigen::Map<const Points>(x.data(), x.size() / 3, 3); }
-
-// The regulariser's own material: the model's, with both stiffnesses scaled.
-Value regularizer_material(const Value& model, const Value& regularizer) {
-  Value material = model;
-  for (const char* key : {"stiffness", "volume_stiffness"}) {
-    material.set(key, Value::number(model[key].as_number() * regularizer[key].as_number()));
+// Share of the model's stiffness that the regulariser takes for a measure.
+double regularizer_share(const MeasureFamily& family, const Value& regularizer) {
+  switch (family.kind()) {
+    case MeasureKind::size:
+      return regularizer["volume_stiffness"].as_number();
+    case MeasureKind::angle:
+      return regularizer["bending_stiffness"].as_number();
+    default:
+      return regularizer["stiffness"].as_number();
   }
-  return material;
 }
 
 }  // namespace
@@ -38,39 +47,49 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings)
   BodyModel body;
   body.name = input.name;
   body.mesh = input.rest;
-  body.mass = lumped_mass(body.mesh, input.model["density"].as_number());
-  const Box box = bounding_box(body.mesh.V);
-  body.height = box.max.y() - box.min.y();
+  const int d = body.dimension();
+  const RowMatrixXd& V = body.mesh.V;
+  const RestSpaceEntry& space = rest_space_entry(input.rest_space);
+  ElasticModel elastic = build_model(body.mesh, space.layout, input.model);
+  body.elastic = std::move(elastic.families);
+  body.mass = std::move(elastic.mass);
+  body.damping = input.model["damping_s"].as_number();
+  const Eigen::RowVectorXd extent = V.colwise().maxCoeff() - V.colwise().minCoeff();
+  body.height = std::max(extent[1], kLeastHeight * extent.norm());
   body.weight = body.mass.sum() * std::max(settings.gravity.norm(), kLeastGravity);
 
-  body.rest = make_cage_space(body.mesh.V, input.cage_weights);
-  body.elastic = build_model(body.mesh, body.rest.layout, input.model);
-  const ElasticModel regularizer =
-      build_model(body.mesh, body.rest.layout, regularizer_material(input.model, input.regularizer));
-  for (std::size_t f = 0; f < body.elastic.size(); ++f) {
-    Eigen::VectorXd measures;
-    body.elastic[f]->values(Side::rest, body.rest.X0, measures);
-    body.S0.push_back(std::move(measures));
-    body.regularizer_coefficients.push_back(regularizer[f]->coefficients());
+  body.rest = space.make({body.mesh, body.elastic, elastic.rest, input.cage_weights, input.examples});
+  body.rest->measures(body.elastic, Eigen::VectorXd::Zero(body.rest->free_parameters()), body.S0, nullptr);
+  for (const auto& family : body.elastic) {
+    const double share = regularizer_share(*family, input.regularizer);
+    Eigen::VectorXd coefficients(family->value_count());
+    for (int i = 0; i < family->value_count(); ++i) {
+      coefficients[i] = share * family->coefficients()[i / family->components()];
+    }
+    body.regularizer_coefficients.push_back(std::move(coefficients));
   }
-  // ½ ρ |ṗ|² h² with ρ h² independent of h: 0.03 M g / L at h = 0.01 s.
-  body.rate_weight =
-      input.regularizer["rate"].as_number() * body.weight / body.height * std::pow(0.01 / settings.h, 2);
+  // ½ ρ |ṗ|² h² with ρ h² independent of h: 0.03 M g L per squared unit of p at h = 0.01 s.
+  const double unit2 = body.rest->unit() * body.rest->unit();
+  body.rate_weight = input.regularizer["rate"].as_number() * body.weight * body.height / unit2 *
+                     std::pow(0.01 / settings.h, 2);
+  body.hull = {body.rest->groups(), input.regularizer["hull"].as_number() * body.weight * body.height};
 
   body.contact_points = input.contact_points;
-  const int standing = std::max(1, count_standing_points(body.contact_points, flatten(body.mesh.V)));
+  const int standing = std::max(1, count_standing_points(body.contact_points, flatten(V)));
   const double layer = input.contact["layer"].as_number() * body.height;
   body.contact = {layer, body.weight / standing / (layer * layer), 2 * body.weight / standing / layer};
 
-  body.pattern = std::make_unique<SymmetricPattern>(static_cast<int>(body.mesh.V.rows()));
+  body.pattern = std::make_unique<SymmetricPattern>(static_cast<int>(V.rows()), d);
   for (const auto& family : body.elastic) family->reserve(*body.pattern);
+  for (int i = 0; i < V.rows(); ++i) body.pattern->couple(&i, 1);
+  const int corners = body.contact_points.corners();
   for (int i = 0; i < body.contact_points.size(); ++i) {
-    body.pattern->couple(body.contact_points.vertices.row(i).data(), 4);
+    body.pattern->couple(body.contact_points.vertices.row(i).data(), corners);
   }
   body.pattern->finish();
   for (const auto& family : body.elastic) family->bind(*body.pattern);
   for (int i = 0; i < body.contact_points.size(); ++i) {
-    body.pattern->append_slots(body.contact_points.vertices.row(i).data(), 4, body.contact_slots);
+    body.pattern->append_slots(body.contact_points.vertices.row(i).data(), corners, body.contact_slots);
   }
   for (int i = 0; i < body.dofs(); ++i) body.diagonal_slots.push_back(body.pattern->slot(i, i));
   body.solver = solver_settings(input.solver);
@@ -80,41 +99,40 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings)
 Body::Body(const BodyInput& input, const WorldSettings& settings)
     : settings_(settings),
       model_(make_body_model(input, settings)),
+      rest_(flatten(model_.mesh.V)),
       workspace_(std::make_unique<StepWorkspace>(*model_.pattern)) {
-  x_ = flatten(model_.mesh.V);
+  x_ = rest_;
   v_ = Eigen::VectorXd::Zero(x_.size());
-  q_ = Eigen::VectorXd::Zero(model_.rest.free_parameters());
+  q_ = Eigen::VectorXd::Zero(model_.rest->free_parameters());
   contact_memory_.resize(static_cast<std::size_t>(model_.contact_points.size()));
-  const ControlledBody controlled{model_.mass, model_.rest.X0, model_.height, -settings.gravity.y(),
-                                  settings.h};
+  const ControlledBody controlled{model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h};
   controller_ = make_controller(controlled, input.controller);
 }
 
-StepSolution Body::solve(const StepProblem& problem, int* fallback, std::string* method) {
-  const Eigen::VectorXd start = guess(settings_.h);
-  *method = model_.solver.method;
-  StepSolution best =
-      find_entry(step_methods(), *method, "step method").solve(problem, q_, start, *workspace_);
+StepSolution Body::solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record) {
+  const auto attempt = [&](const std::string& method) {
+    StepSolution solution =
+        find_entry(step_methods(), method, "step method").solve(problem, q_, start, *workspace_);
+    record.iterations += solution.iterations;
+    record.halvings += solution.halvings;
+    record.guards += solution.guards;
+    return solution;
+  };
+  record.method = model_.solver.method;
+  StepSolution best = attempt(record.method);
   if (best.exact && best.optimal) return best;
 
-  *fallback = std::max(*fallback, 1);
-  const StepSolution first = best;
-  const std::string other = *method == "sqp" ? "reduced" : "sqp";
-  StepSolution second =
-      find_entry(step_methods(), other, "step method").solve(problem, q_, start, *workspace_);
+  record.fallback = std::max(record.fallback, 1);
+  const std::string other = record.method == "sqp" ? "reduced" : "sqp";
+  StepSolution second = attempt(other);
   if (second.exact && (!best.exact || second.objective < best.objective)) {
-    *method = other;
+    record.method = other;
     best = std::move(second);
-    best.iterations += first.iterations;
-    best.halvings += first.halvings;
-  } else {
-    best.iterations += second.iterations;
-    best.halvings += second.halvings;
   }
   if (best.exact) return best;
 
-  *fallback = 2;
-  *method = "hold";
+  record.fallback = 2;
+  record.method = "hold";
   for (const double keep : {1.0, kRelaxedRest, kRelaxedRest * kRelaxedRest}) {
     for (const Eigen::VectorXd& x : {start, x_}) {
       StepSolution hold;
@@ -127,78 +145,77 @@ StepSolution Body::solve(const StepProblem& problem, int* fallback, std::string*
   return best;
 }
 
-StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
-  const auto begin = std::chrono::steady_clock::now();
-  const double h = settings_.h;
-  double load = 0;
-  for (const ContactMemory& memory : contact_memory_) load += memory.normal_force;
-  const Goals goals = make_goals(controller_->goals({x_, v_, load}), x_, h);
-
-  Eigen::VectorXd x_tilde = guess(h);
+bool Body::advance(double h, const std::vector<Goal>& goals, const std::vector<Collider>& colliders,
+                   StepRecord& record) {
+  const int d = model_.dimension();
+  const Goals wanted = make_goals(goals, x_, h);
+  const Eigen::VectorXd start = x_ + h * v_;
+  Eigen::VectorXd x_tilde = start;
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i)
-    x_tilde.segment<3>(3 * i) += h * h * settings_.gravity;
+    x_tilde.segment(d * i, d) += h * h * settings_.gravity.head(d);
 
-  const double fastest = unflatten(v_).rowwise().norm().maxCoeff() + h * settings_.gravity.norm();
+  const double fastest = unflatten(v_, d).rowwise().norm().maxCoeff() + h * settings_.gravity.norm();
   const double reach = model_.contact.layer + 2 * h * fastest + 0.05 * model_.height;
   ContactSet contacts(model_.contact_points, model_.contact, colliders, x_, reach, contact_memory_);
   StepSolution solution;
-  int fallback = 0;
-  std::string method;
-  int iterations = 0, halvings = 0;
   for (int pass = 1;; ++pass) {
-    const StepProblem problem(model_, contacts, goals, x_tilde, q_, h);
-    solution = solve(problem, &fallback, &method);
-    iterations += solution.iterations;
-    halvings += solution.halvings;
+    const StepProblem problem(model_, contacts, wanted, x_, x_tilde, q_, h);
+    solution = solve(problem, start, record);
     if (!solution.exact || pass == kMaxContactPasses ||
         contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer))
       break;
     contacts =
         ContactSet(model_.contact_points, model_.contact, colliders, solution.at.x, reach, contact_memory_);
   }
-  if (!solution.exact) {
+  record.residual_rel = std::max(record.residual_rel, solution.residual);
+  if (!solution.exact) return false;
+
+  const Eigen::VectorXd x_n = x_;
+  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (solution.rest.q - q_)).norm() / h);
+  v_ = (solution.at.x - x_) / h;
+  x_ = solution.at.x;
+  contacts.update_memory(x_, contact_memory_);
+  measure(StepProblem(model_, contacts, wanted, x_n, x_tilde, q_, h), solution, record);
+  q_ = solution.rest.q;
+  return true;
+}
+
+StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
+  const auto begin = std::chrono::steady_clock::now();
+  double load = 0;
+  for (const ContactMemory& memory : contact_memory_) load += memory.normal_force;
+  const std::vector<Goal> goals = controller_->goals({x_, v_, load});
+
+  const State before{x_, v_, q_, contact_memory_};
+  StepRecord record;
+  bool solved = false;
+  for (int splits = 0; splits <= kMaxStepSplits && !solved; ++splits) {
+    record.residual_rel = record.p_rate = 0;
+    record.substeps = 1 << splits;
+    solved = true;
+    for (int part = 0; part < record.substeps && solved; ++part) {
+      solved = advance(settings_.h / record.substeps, goals, colliders, record);
+    }
+    if (solved) break;
+    x_ = before.x;
+    v_ = before.v;
+    q_ = before.q;
+    contact_memory_ = before.contacts;
+  }
+  if (!solved) {
     throw Error(ErrorKind::numerical,
                 "body '" + model_.name + "', step " + std::to_string(step) +
                     ": the equations of motion were not solved (residual " +
-                    std::to_string(solution.residual) + " of the weight)",
+                    number_text(record.residual_rel) + " of the weight, in steps down to a " +
+                    std::to_string(1 << kMaxStepSplits) + "th)",
                 "raise frames.steps_per_frame, or make the model stiffer");
   }
 
-  StepRecord record;
   record.step = step;
-  record.t = static_cast<double>(step) * h;
+  record.t = static_cast<double>(step) * settings_.h;
   record.body = model_.name;
-  record.method = method;
-  record.iterations = iterations;
-  record.halvings = halvings;
-  record.fallback = fallback;
-  record.residual_rel = solution.residual;
-  record.objective = solution.objective;
-  const Eigen::VectorXd p = model_.rest.basis * solution.rest.q;
-  record.p_norm = p.norm();
-  record.p_rate = (p - this->p()).norm() / h;
   record.phase = controller_->phase();
-
-  v_ = (solution.at.x - x_) / h;
-  x_ = solution.at.x;
-  q_ = solution.rest.q;
-  contacts.update_memory(x_, contact_memory_);
-
-  record.com = centre_of_mass(model_.mass, x_);
-  record.vel = centre_of_mass(model_.mass, v_);
-  const StepProblem problem(model_, contacts, goals, x_tilde, q_, h);
-  const Eigen::VectorXd internal = problem.elastic_gradient(solution.at, solution.rest);
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < model_.mass.size(); ++i) {
-    const Eigen::Vector3d f = internal.segment<3>(3 * i), arm = x_.segment<3>(3 * i) - record.com;
-    force += f;
-    torque += arm.cross(f);
-    record.kinetic += 0.5 * model_.mass[i] * v_.segment<3>(3 * i).squaredNorm();
-  }
-  record.internal_force = force.norm();
-  record.internal_torque = torque.norm();
-  record.elastic = problem.elastic_energy(solution.at, solution.rest);
-  record.min_element_ratio = problem.smallest_element(solution.at);
+  record.p_norm = p().norm();
   record.contacts =
       static_cast<int>(std::count_if(contact_memory_.begin(), contact_memory_.end(),
                                      [](const ContactMemory& memory) { return memory.touching; }));
@@ -209,15 +226,35 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
       record.min_clearance = std::min(record.min_clearance, collider.nearest(y).distance);
   }
   record.max_penetration = std::max(0.0, -record.min_clearance);
-  const Eigen::Matrix3d R = best_rotation(model_.mass, model_.rest.X0, x_);
+  const Eigen::Matrix3d R = best_rotation(model_.mass, rest_, x_);
   record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
   wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return record;
 }
 
+void Body::measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const {
+  const int d = model_.dimension();
+  record.objective = solution.objective;
+  record.com = centre_of_mass(model_.mass, x_);
+  record.vel = centre_of_mass(model_.mass, v_);
+  const Eigen::VectorXd internal = problem.internal_gradient(solution.at, solution.rest);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
+  record.kinetic = 0;
+  for (Eigen::Index i = 0; i < model_.mass.size(); ++i) {
+    const Eigen::Vector3d f = spatial_point(internal, i, d), arm = spatial_point(x_, i, d) - record.com;
+    force += f;
+    torque += arm.cross(f);
+    record.kinetic += 0.5 * model_.mass[i] * v_.segment(d * i, d).squaredNorm();
+  }
+  record.internal_force = force.norm();
+  record.internal_torque = torque.norm();
+  record.elastic = problem.elastic_energy(solution.at, solution.rest);
+  record.min_element_ratio = problem.smallest_element(solution.at);
+}
+
 void Body::save(Hdf5Writer& file, const std::string& group) const {
-  file.put(group + "/x", RowMatrixXd(unflatten(x_)));
-  file.put(group + "/v", RowMatrixXd(unflatten(v_)));
+  file.put(group + "/x", unflatten(x_, model_.dimension()));
+  file.put(group + "/v", unflatten(v_, model_.dimension()));
   file.put(group + "/p", p());
   file.put(group + "/restart/q", q_);
   RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 6);

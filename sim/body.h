@@ -17,8 +17,10 @@ namespace vivify::sim {
 // What a body is made from. The settings are resolved with the schemas of sim/settings.h.
 struct BodyInput {
   std::string name;
-  TetMesh rest;                  // placed in the scene
-  Eigen::MatrixXd cage_weights;  // #V by #C: harmonic coordinates of the rest vertices
+  SimMesh rest;                       // placed in the scene
+  std::string rest_space = "cage";    // a name of sim/rest/rest_space.h
+  Eigen::MatrixXd cage_weights;       // #V by #C: harmonic coordinates of the rest vertices (cage)
+  std::vector<ExamplePose> examples;  // placed in the scene (examples, strains)
   ContactPoints contact_points;
   Value model, regularizer, contact, controller, solver;
 };
@@ -27,6 +29,8 @@ struct WorldSettings {
   Eigen::Vector3d gravity = {0, -9.81, 0};  // m/s²
   double h = 1.0 / 48;                      // s
 };
+
+// Throws Error(geometry) or Error(usage) when the input cannot be simulated.
 
 BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings);
 
@@ -37,9 +41,9 @@ class Body {
   Body(Body&&) = delete;
 
   const BodyModel& model() const { return model_; }
-  const Eigen::VectorXd& x() const { return x_; }  // 3 #V, m
-  const Eigen::VectorXd& v() const { return v_; }  // 3 #V, m/s
-  Eigen::VectorXd p() const { return model_.rest.basis * q_; }
+  const Eigen::VectorXd& x() const { return x_; }  // d #V, m
+  const Eigen::VectorXd& v() const { return v_; }  // d #V, m/s
+  Eigen::VectorXd p() const { return model_.rest->basis() * q_; }
   const Controller& controller() const { return *controller_; }
   double wall_seconds() const { return wall_seconds_; }  // spent in step() by this process
 
@@ -51,11 +55,19 @@ class Body {
   void restore(const Hdf5Reader& file, const std::string& group);
 
  private:
-  StepSolution solve(const StepProblem& problem, int* fallback, std::string* method);
-  Eigen::VectorXd guess(double h) const { return x_ + h * v_; }
+  struct State {
+    Eigen::VectorXd x, v, q;
+    std::vector<ContactMemory> contacts;
+  };
+  // One step of size h towards the goals; false when no exact step was found. Adds to the record.
+  bool advance(double h, const std::vector<Goal>& goals, const std::vector<Collider>& colliders,
+               StepRecord& record);
+  StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record);
+  void measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const;
 
   WorldSettings settings_;
   BodyModel model_;
+  Eigen::VectorXd rest_;  // d #V, the shape as placed in the scene
   std::unique_ptr<StepWorkspace> workspace_;
   std::unique_ptr<Controller> controller_;
   Eigen::VectorXd x_, v_, q_;

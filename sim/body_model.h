@@ -10,6 +10,7 @@
 #include "common/mesh.h"
 #include "sim/contact/contact_set.h"
 #include "sim/elastic/models.h"
+#include "sim/rest/hull.h"
 #include "sim/rest/rest_space.h"
 #include "sim/solve/sparse_matrix.h"
 
@@ -25,26 +26,29 @@ struct SolverSettings {
 
 struct BodyModel {
   std::string name;
-  TetMesh mesh;          // at rest, as placed in the scene
+  SimMesh mesh;          // at rest, as placed in the scene
   Eigen::VectorXd mass;  // #V, kg
   double height = 0;     // m
   double weight = 0;     // N
 
-  ElasticModel elastic;
-  RestSpace rest;
-  std::vector<Eigen::VectorXd> S0;                        // per family: measures of X₀
-  std::vector<Eigen::VectorXd> regularizer_coefficients;  // per family, of W_reg (11)
-  double rate_weight = 0;                                 // ρ of ½ ρ |p − p_n|², J/m²
+  ElasticFamilies elastic;
+  double damping = 0;  // Rayleigh's β, s
+  std::unique_ptr<RestSpace> rest;
+  std::vector<Eigen::VectorXd> S0;                        // per family: measures of X₀ (#values)
+  std::vector<Eigen::VectorXd> regularizer_coefficients;  // per family (#values), of W_reg (11)
+  double rate_weight = 0;  // ρ of ½ ρ |p − p_n|², J per squared unit of p
+  Hull hull;               // of the examples
 
   ContactPoints contact_points;
   ContactParameters contact;
 
   std::unique_ptr<SymmetricPattern> pattern;
-  std::vector<int> contact_slots;   // places of the 12 by 12 block of each contact point
-  std::vector<int> diagonal_slots;  // 3 #V
+  std::vector<int> contact_slots;   // places of the block of each contact point
+  std::vector<int> diagonal_slots;  // d #V
   SolverSettings solver;
 
-  int dofs() const { return static_cast<int>(3 * mesh.V.rows()); }
+  int dimension() const { return mesh.dimension(); }
+  int dofs() const { return static_cast<int>(mesh.V.size()); }
 };
 
 }  // namespace vivify::sim

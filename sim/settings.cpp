@@ -8,9 +8,19 @@ Schema regularizer_schema() {
   return object(
              "Cost of changing the rest shape: the elastic energy between the initial and the current rest "
              "shape, (11).")
-      .field("stiffness", number("Edge stiffness, as a share of the model's.").above(0).initially(0.03))
+      .field("stiffness",
+             number("Stiffness against stretch, as a share of the model's.").above(0).initially(0.03))
       .field("volume_stiffness",
-             number("Volume stiffness, as a share of the model's.").at_least(0).initially(0.03))
+             number("Stiffness against change of area or volume, as a share of the model's.")
+                 .at_least(0)
+                 .initially(0.03))
+      .field("bending_stiffness", number("Bending stiffness of rods and shells, as a share of the model's.")
+                                      .at_least(0)
+                                      .initially(0.03))
+      .field("hull", number("Cost of leaving the hull of the examples (weights that are negative or sum to "
+                            "more than 1), in units of weight times height.")
+                         .at_least(0)
+                         .initially(10))
       .field("rate", number("Cost of changing the rest shape quickly; strong values make characters fall.")
                          .at_least(0)
                          .initially(0.03));

@@ -9,7 +9,8 @@ std::string csv_header() {
          "rate,"
          "com_x_m,com_y_m,com_z_m,vel_x_m_s,vel_y_m_s,vel_z_m_s,internal_force_sum_n,internal_torque_sum_nm,"
          "contacts,"
-         "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,phase\n";
+         "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,guards,substeps,"
+         "phase\n";
 }
 
 std::string csv_line(const StepRecord& r) {
@@ -27,7 +28,7 @@ std::string csv_line(const StepRecord& r) {
        {r.max_penetration, r.min_clearance, r.min_element_ratio, r.kinetic, r.elastic, r.tilt_deg}) {
     add(value);
   }
-  return line + ',' + r.phase + '\n';
+  return line + ',' + std::to_string(r.guards) + ',' + std::to_string(r.substeps) + ',' + r.phase + '\n';
 }
 
 }  // namespace vivify::sim

@@ -15,10 +15,12 @@ struct StepRecord {
   int iterations = 0;       // of the optimiser, over all methods and contact passes
   int halvings = 0;         // damped or shortened trial steps
   int fallback = 0;         // 0: the chosen method converged; 1: the other was tried too; 2: rest shape held
+  int guards = 0;           // trial steps refused because an element collapsed
+  int substeps = 1;         // parts that the step was cut into because it could not be solved whole
   double residual_rel = 0;  // ‖c‖∞ over the weight
   double objective = 0;     // J
-  double p_norm = 0;        // m
-  double p_rate = 0;        // ‖p − p_n‖ / h, m/s
+  double p_norm = 0;        // m, or shares of examples
+  double p_rate = 0;        // ‖p − p_n‖ / h, per second
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  // m
   Eigen::Vector3d vel = Eigen::Vector3d::Zero();  // m/s
   double internal_force = 0;                      // ‖Σ f_int‖, N
@@ -26,7 +28,7 @@ struct StepRecord {
   int contacts = 0;                               // points with a normal force
   double max_penetration = 0;                     // of the drawn surface's contact points below a collider, m
   double min_clearance = 0;      // smallest signed distance to a collider, m; infinite without colliders
-  double min_element_ratio = 1;  // smallest v/V̄
+  double min_element_ratio = 1;  // smallest v/V̄ (of rods and shells: l/L̄)
   double kinetic = 0;            // J
   double elastic = 0;            // J
   double tilt_deg = 0;           // angle of the body's up vector to the vertical

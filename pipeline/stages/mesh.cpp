@@ -10,6 +10,7 @@
 #include "pipeline/content_key.h"
 #include "pipeline/placement.h"
 #include "pipeline/stages/stages.h"
+#include "sim/elastic/models.h"
 
 namespace vivify::pipeline {
 namespace {
@@ -48,13 +49,13 @@ Bytes make_body(const Scene& scene, const Value& body) {
   file.put_attribute("schema_version", 1);
   file.put("/X0", RowMatrixXd(mesh.V));
   file.put("/elements", RowMatrixXi(mesh.T));
-  file.put("/mass", lumped_mass(mesh, body["model"]["density"].as_number()));
+  file.put("/mass", sim::build_model(sim_mesh(mesh), sim::RestLayout::compatible, body["model"]).mass);
   file.put("/surface/V", RowMatrixXd(surface.V));
   file.put("/surface/F", RowMatrixXi(surface.F));
   if (surface.UV.rows() > 0) file.put("/surface/UV", RowMatrixXd(surface.UV));
   if (surface.face_part.size() > 0) file.put("/surface/face_part", surface.face_part);
   if (!surface.part_names.empty()) file.put("/surface/part_names", surface.part_names);
-  file.put("/embedding/tet", embedding.tet);
+  file.put("/embedding/tet", embedding.element);
   file.put("/embedding/weights", RowMatrixXd(embedding.weights));
   file.put("/repaired/V", RowMatrixXd(repaired.mesh.V));
   file.put("/repaired/F", RowMatrixXi(repaired.mesh.F));
@@ -88,7 +89,7 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
 std::string mesh_key(const Job& job, const Value& body) {
   ContentKey key("meshing");
   for (const char* part : {"position", "scale", "heading_deg", "tetrahedra"}) key.add(part, body[part]);
-  key.add("density", body["model"]["density"]);
+  key.add("model", body["model"]);
   key.add_file(job.scene.resolve_path(body["mesh"].as_string()));
   return key.hex();
 }

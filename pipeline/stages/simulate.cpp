@@ -40,15 +40,15 @@ sim::BodyInput load_body(const Job& job, const Value& body) {
   const Hdf5Reader mesh(job.out / mesh_file(body));
   sim::BodyInput input;
   input.name = body["name"].as_string();
-  input.rest.V = mesh.matrix("/X0");
-  input.rest.T = mesh.int_matrix("/elements");
+  input.rest = {mesh.matrix("/X0"), mesh.int_matrix("/elements")};
+  input.rest_space = body["rest_space"]["type"].as_string();
   input.cage_weights = Hdf5Reader(job.out / weights_file(body)).matrix("/weights");
   const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
-  Tetrahedra corners(tet.size(), 4);
-  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.T.row(tet[i]);
-  input.contact_points =
-      sim::select_contact_points(mesh.matrix("/surface/V"), corners, mesh.matrix("/embedding/weights"),
-                                 static_cast<int>(body["contact"]["points"].as_integer()));
+  RowMatrixXi corners(tet.size(), input.rest.E.cols());
+  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.E.row(tet[i]);
+  input.contact_points = sim::select_contact_points(mesh.matrix("/surface/V"), corners,
+                                                    mesh.matrix("/embedding/weights"), input.rest.dimension(),
+                                                    static_cast<int>(body["contact"]["points"].as_integer()));
   input.model = body["model"];
   input.regularizer = body["regularizer"];
   input.contact = body["contact"];

@@ -29,10 +29,8 @@ void sample_farthest(const Points& surface, const std::vector<int>& candidates, 
 
 }  // namespace
 
-ContactPoints select_contact_points(const Points& surface,
-                                    const Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor>& vertices,
-                                    const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>& weights,
-                                    int count) {
+ContactPoints select_contact_points(const Points& surface, const RowMatrixXi& vertices,
+                                    const RowMatrixXd& weights, int dimension, int count) {
   const Box box = bounding_box(surface);
   const double foot = box.min.y() + kFootHeight * (box.max.y() - box.min.y());
   std::vector<int> low, all;
@@ -44,8 +42,9 @@ ContactPoints select_contact_points(const Points& surface,
   sample_farthest(surface, low, count / 2, chosen);
   sample_farthest(surface, all, count - static_cast<int>(chosen.size()), chosen);
   ContactPoints points;
-  points.vertices.resize(static_cast<Eigen::Index>(chosen.size()), 4);
-  points.weights.resize(static_cast<Eigen::Index>(chosen.size()), 4);
+  points.dimension = dimension;
+  points.vertices.resize(static_cast<Eigen::Index>(chosen.size()), vertices.cols());
+  points.weights.resize(static_cast<Eigen::Index>(chosen.size()), weights.cols());
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     points.vertices.row(static_cast<Eigen::Index>(k)) = vertices.row(chosen[k]);
     points.weights.row(static_cast<Eigen::Index>(k)) = weights.row(chosen[k]);

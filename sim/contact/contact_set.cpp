@@ -1,8 +1,27 @@
 #include "sim/contact/contact_set.h"
 
 #include <cmath>
+#include <optional>
 
 namespace vivify::sim {
+namespace {
+
+constexpr double kLeastPlanarNormal = 0.1;  // of a normal's part in the plane of a flat body
+
+// The nearest place of a collider as a body of that dimension meets it: flat bodies meet its section with the
+// plane z = 0. Empty where the collider faces across the plane.
+std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen::Vector3d& y, int dimension) {
+  SurfacePoint nearest = collider.nearest(y);
+  if (dimension == 3) return nearest;
+  nearest.normal.z() = 0;
+  const double length = nearest.normal.norm();
+  if (length < kLeastPlanarNormal) return std::nullopt;
+  nearest.normal /= length;
+  nearest.position.z() = 0;
+  return nearest;
+}
+
+}  // namespace
 
 ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& parameters,
                        const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
@@ -11,11 +30,11 @@ ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& par
   for (int i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d y = points.position(i, x);
     for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
-      const SurfacePoint nearest = colliders[c].nearest(y);
-      if (nearest.distance > reach) continue;
+      const std::optional<SurfacePoint> nearest = nearest_place(colliders[c], y, points.dimension);
+      if (!nearest || nearest->distance > reach) continue;
       const bool touched = memory[i].touching && memory[i].collider == c;
       const double limit = touched ? colliders[c].friction() * memory[i].normal_force : 0.0;
-      contacts_.push_back({i, c, nearest.position, nearest.normal, memory[i].anchor,
+      contacts_.push_back({i, c, nearest->position, nearest->normal, memory[i].anchor,
                            Friction(parameters.friction_stiffness, limit)});
     }
   }
@@ -36,22 +55,23 @@ void ContactSet::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradien
     const Eigen::Vector3d y = points_->position(contact.point, x);
     const Eigen::Vector3d g = -normal_.force(contact.normal.dot(y - contact.origin)) * contact.normal +
                               contact.friction.gradient(tangential(contact, y - contact.anchor));
-    for (int k = 0; k < 4; ++k) {
-      gradient.segment<3>(3 * points_->vertices(contact.point, k)) += points_->weights(contact.point, k) * g;
+    const int d = points_->dimension;
+    for (int k = 0; k < points_->corners(); ++k) {
+      gradient.segment(d * points_->vertices(contact.point, k), d) +=
+          points_->weights(contact.point, k) * g.head(d);
     }
   }
 }
 
-template <class Block>
-void ContactSet::scatter(const Contact& contact, const Block& block, const std::vector<int>& slots,
+void ContactSet::scatter(const Contact& contact, const Eigen::Matrix3d& block, const std::vector<int>& slots,
                          SymmetricMatrix& matrix) const {
-  static constexpr int kEntries = 12 * 13 / 2;
-  const int* slot = slots.data() + kEntries * contact.point;
+  const int d = points_->dimension, size = d * points_->corners();
+  const int* slot = slots.data() + size * (size + 1) / 2 * contact.point;
   double* values = matrix.values();
-  for (int column = 0; column < 12; ++column) {
-    for (int row = column; row < 12; ++row) {
-      values[*slot++] += points_->weights(contact.point, row / 3) *
-                         points_->weights(contact.point, column / 3) * block(row % 3, column % 3);
+  for (int column = 0; column < size; ++column) {
+    for (int row = column; row < size; ++row) {
+      values[*slot++] += points_->weights(contact.point, row / d) *
+                         points_->weights(contact.point, column / d) * block(row % d, column % d);
     }
   }
 }

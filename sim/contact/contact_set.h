@@ -15,16 +15,21 @@
 
 namespace vivify::sim {
 
-// Points of a body that may touch: each a fixed combination of four vertices, so that the drawn surface
-// itself touches.
+// Points of a body that may touch: each a fixed combination of the vertices of an element, so that the drawn
+// surface itself touches. Bodies of the plane touch with their points of z = 0.
 struct ContactPoints {
-  Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> vertices;
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;
+  RowMatrixXi vertices;  // #P by k
+  RowMatrixXd weights;   // #P by k
+  int dimension = 3;     // coordinates per vertex
 
   int size() const { return static_cast<int>(vertices.rows()); }
+  int corners() const { return static_cast<int>(vertices.cols()); }
   Eigen::Vector3d position(int i, const Eigen::VectorXd& x) const {
     Eigen::Vector3d y = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 4; ++k) y += weights(i, k) * x.segment<3>(3 * vertices(i, k));
+    for (int k = 0; k < corners(); ++k) {
+      const double* vertex = x.data() + dimension * vertices(i, k);
+      for (int axis = 0; axis < dimension; ++axis) y[axis] += weights(i, k) * vertex[axis];
+    }
     return y;
   }
 };
@@ -93,8 +98,7 @@ class ContactSet {
   Eigen::Vector3d tangential(const Contact& contact, const Eigen::Vector3d& v) const {
     return v - contact.normal * contact.normal.dot(v);
   }
-  template <class Block>
-  void scatter(const Contact& contact, const Block& block, const std::vector<int>& slots,
+  void scatter(const Contact& contact, const Eigen::Matrix3d& block, const std::vector<int>& slots,
                SymmetricMatrix& matrix) const;
 
   const ContactPoints* points_ = nullptr;

@@ -17,16 +17,17 @@ namespace vivify::sim {
 // What a controller knows of its body, fixed for the run.
 struct ControlledBody {
   const Eigen::VectorXd& mass;  // #V, kg
-  const Eigen::VectorXd& rest;  // 3 #V, m, as placed in the scene
+  const Eigen::VectorXd& rest;  // d #V, m, as placed in the scene
   double height;                // of the body at rest, m
   double gravity;               // downwards, m/s²
   double h;                     // step size, s
+  int dimension() const { return static_cast<int>(rest.size() / mass.size()); }
 };
 
 // What a controller sees at the start of a step.
 struct Observation {
-  const Eigen::VectorXd& x;  // 3 #V, m
-  const Eigen::VectorXd& v;  // 3 #V, m/s
+  const Eigen::VectorXd& x;  // d #V, m
+  const Eigen::VectorXd& v;  // d #V, m/s
   double load;               // sum of the normal forces of the last step, N
 };
 

@@ -6,16 +6,18 @@
 namespace vivify::sim {
 
 Eigen::Vector3d centre_of_mass(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
+  const int d = dimension_of(mass, x);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < mass.size(); ++i) sum += mass[i] * x.segment<3>(3 * i);
+  for (Eigen::Index i = 0; i < mass.size(); ++i) sum += mass[i] * spatial_point(x, i, d);
   return sum / mass.sum();
 }
 
 Eigen::Matrix3d inertia_tensor(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
+  const int d = dimension_of(mass, x);
   const Eigen::Vector3d centre = centre_of_mass(mass, x);
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    const Eigen::Vector3d r = x.segment<3>(3 * i) - centre;
+    const Eigen::Vector3d r = spatial_point(x, i, d) - centre;
     inertia += mass[i] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
   }
   return inertia;
@@ -23,10 +25,11 @@ Eigen::Matrix3d inertia_tensor(const Eigen::VectorXd& mass, const Eigen::VectorX
 
 Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::VectorXd& x,
                                  const Eigen::VectorXd& v) {
+  const int d = dimension_of(mass, x);
   const Eigen::Vector3d centre = centre_of_mass(mass, x);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    const Eigen::Vector3d r = x.segment<3>(3 * i) - centre, vi = v.segment<3>(3 * i);
+    const Eigen::Vector3d r = spatial_point(x, i, d) - centre, vi = spatial_point(v, i, d);
     sum += mass[i] * r.cross(vi);
   }
   return sum;
@@ -34,11 +37,12 @@ Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::Vecto
 
 Eigen::Matrix3d best_rotation(const Eigen::VectorXd& mass, const Eigen::VectorXd& rest,
                               const Eigen::VectorXd& x) {
+  const int d = dimension_of(mass, x);
   const Eigen::Vector3d rest_centre = centre_of_mass(mass, rest), centre = centre_of_mass(mass, x);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
     covariance +=
-        mass[i] * (x.segment<3>(3 * i) - centre) * (rest.segment<3>(3 * i) - rest_centre).transpose();
+        mass[i] * (spatial_point(x, i, d) - centre) * (spatial_point(rest, i, d) - rest_centre).transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();

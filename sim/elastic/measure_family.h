@@ -1,18 +1,24 @@
-// The one form of every elastic energy: W = Σ ½ c (s(x) − S(X))², with the same measure s taken on the
-// deformed and on the rest stencil. A family is all terms of a model that share one measure. Closed forms of
-// the derivatives, with g = ∇s(x), H = ∇²s(x), G = ∇S(X) and l the part of λ on the element:
-//   ∂W/∂x = c (s − S) g                       (minus the internal force)
-//   D     = c (g gᵀ + (s − S) H)              ∂²W/∂x²
-//   E     = −c g Gᵀ                           ∂²W/∂x∂X
-//   A     = c ((g·l) H + g (Hl)ᵀ + (Hl) gᵀ + (s − S) ∇³s[l]),   B = −c G (Hl)ᵀ,   C = −c (g·l) ∇²S
+// The one form of every elastic energy: W = Σ w(s(x), S(X)), with the same measure s taken on the deformed
+// and on the rest stencil. A family is all terms of a model that share one measure and one law; for nearly
+// all of them w = ½ c (s − S)² (sim/elastic/law.h). Closed forms of the derivatives, for terms with one
+// component, with g = ∇s(x), H = ∇²s(x), G = ∇S(X) and l the part of λ on the stencil:
+//   ∂W/∂x = w_s g                             (minus the internal force)
+//   D     = w_ss g gᵀ + w_s H                 ∂²W/∂x²
+//   E     = w_sS g Gᵀ                         ∂²W/∂x∂X
+//   A     = w_ss ((g·l) H + g (Hl)ᵀ + (Hl) gᵀ) + w_s ∇³s[l]
+//   B     = w_sS G (Hl)ᵀ + …,   C = w_Ss (g·l) ∇²S + …
 // A, B, C are the elastic parts of the blocks of equation (13) of Coros et al. 2012.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/matrix.h"
+#include "sim/elastic/law.h"
 #include "sim/solve/sparse_matrix.h"
 
 namespace vivify::sim {
@@ -20,53 +26,69 @@ namespace vivify::sim {
 // Deformed stencils index the vertices of x; rest stencils index the points of the stacked rest shape X.
 enum class Side { deformed, rest };
 
+// What happens to a measure when a body is squeezed: which stiffness of the regulariser scales it, and
+// whether it tells collapse.
+enum class MeasureKind { stretch, size, angle };
+
 class MeasureFamily {
  public:
+  explicit MeasureFamily(std::unique_ptr<Law> law) : law_(std::move(law)) {}
   virtual ~MeasureFamily() = default;
 
-  virtual std::string name() const = 0;
+  virtual std::string_view name() const = 0;
+  virtual MeasureKind kind() const = 0;
+  virtual int dimension() const = 0;  // coordinates per point
   virtual int points_per_term() const = 0;
-  // Whether s is the signed size of an element (area, volume): its ratio to the reference tells collapse and
-  // inversion.
-  virtual bool measures_size() const = 0;
-  int size() const { return static_cast<int>(coefficients_.size()); }
+  virtual int components() const = 0;  // values per term
+  virtual int parameters() const = 0;  // constants per term, from the reference shape
+  int size() const { return static_cast<int>(coefficients_.size()); }  // #terms
+  int value_count() const { return size() * components(); }
   const Eigen::VectorXd& coefficients() const { return coefficients_; }  // #terms
   const std::vector<int>& stencils(Side side) const {
     return stencils_[side == Side::rest];
   }  // #terms · points
+  const Law& law() const { return *law_; }
 
-  // Adds a term. `deformed` and `rest` hold points_per_term() indices.
-  void add(const std::vector<int>& deformed, const std::vector<int>& rest, double coefficient);
+  // Adds a term. `deformed` and `rest` hold points_per_term() indices, `constants` parameters() numbers.
+  void add(std::span<const int> deformed, std::span<const int> rest, double coefficient,
+           std::span<const double> constants = {});
 
   // Joins terms that share both stencils into one with the sum of their coefficients (exact: same s, same S).
+  // For measures without constants.
   void merge_equal_terms();
 
-  // s of every term (#terms). `x` is the flat vector of positions (3 #points).
+  // s of every term (#values), component by component of each term. `x` is the flat vector of positions.
   virtual void values(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s) const = 0;
 
-  // s, and ∇s as one column per term (3 points by #terms).
+  // s, and ∇s in the layout that the other functions take.
   virtual void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s,
-                         Eigen::MatrixXd& g) const = 0;
+                         Eigen::VectorXd& g) const = 0;
 
   // out += Σ w_i g_i, scattered to the points.
-  void scatter(Side side, const Eigen::MatrixXd& g, const Eigen::VectorXd& w, Eigen::VectorXd& out) const;
+  virtual void scatter(Side side, const Eigen::VectorXd& g, const Eigen::VectorXd& w,
+                       Eigen::VectorXd& out) const = 0;
 
-  // Row i is g_iᵀ Y restricted to the stencil of term i. Y is 3 #points by k; the result is #terms by k.
-  Eigen::MatrixXd gather(Side side, const Eigen::MatrixXd& g, const Eigen::MatrixXd& Y) const;
+  // Row i is g_iᵀ Y restricted to the stencil of value i. Y has a row per coordinate of the points; the
+  // result is #values by k.
+  virtual RowMatrixXd gather(Side side, const Eigen::VectorXd& g, const RowMatrixXd& Y) const = 0;
 
-  // matrix += Σ a_i g_i g_iᵀ + b_i ∇²s_i over deformed stencils.
-  virtual void add_hessians(const Eigen::VectorXd& x, const Eigen::MatrixXd& g, const Eigen::VectorXd& a,
+  // matrix += Σ a g gᵀ + b ∇²s over deformed stencils. `a` has one number per value, or components² per term
+  // that couple the components of a term; `b` one per value.
+  virtual void add_hessians(const Eigen::VectorXd& x, const Eigen::VectorXd& g, const Eigen::VectorXd& a,
                             const Eigen::VectorXd& b, SymmetricMatrix& matrix) const = 0;
 
-  // Column i is ∇²s_i l on the stencil of term i (3 points by #terms); l is flat (3 #points).
-  virtual Eigen::MatrixXd hessian_products(const Eigen::VectorXd& x, const Eigen::VectorXd& l) const = 0;
+  // ∇²s l for every value, in the layout of the gradients; l is flat.
+  virtual void hessian_products(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
+                                Eigen::VectorXd& Hl) const = 0;
 
-  // matrix += the elastic part of block A for the multiplier l.
-  virtual void add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& S, const Eigen::VectorXd& l,
+  // matrix += the derivative of add_hessians(x, g, a, b) along l, for a law that is quadratic in s: with
+  // db = ∂b/∂s · (g·l).
+  virtual void add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& g, const Eigen::VectorXd& a,
+                           const Eigen::VectorXd& b, const Eigen::VectorXd& db, const Eigen::VectorXd& l,
                            SymmetricMatrix& matrix) const = 0;
 
-  // out += Σ w_i Lᵀ ∇²S_i L over rest stencils; X is the flat rest shape, L is 3 #rest points by #p.
-  virtual void add_rest_hessians(const Eigen::VectorXd& X, const Eigen::VectorXd& w, const Eigen::MatrixXd& L,
+  // out += Σ w_i Lᵀ ∇²S_i L over rest stencils; X is the flat rest shape, L has a row per coordinate of it.
+  virtual void add_rest_hessians(const Eigen::VectorXd& X, const Eigen::VectorXd& w, const RowMatrixXd& L,
                                  Eigen::MatrixXd& out) const = 0;
 
   // Declares the entries that add_hessians writes, and remembers where they lie.
@@ -76,10 +98,22 @@ class MeasureFamily {
  protected:
   Eigen::VectorXd coefficients_;
   std::vector<int> stencils_[2];
+  std::vector<double> constants_;
   std::vector<int> slots_;  // for each term, the places of the lower triangle of its block
+  std::unique_ptr<Law> law_;
 };
 
-std::unique_ptr<MeasureFamily> make_edge_length_family();
-std::unique_ptr<MeasureFamily> make_volume_family();
+// How many terms the kernels take at a time: SIMD packets, or one by one (for comparison).
+enum class Kernels { packets, scalar };
+
+struct MeasureEntry {
+  std::string_view name;
+  int dimension;
+  std::unique_ptr<MeasureFamily> (*make)(Kernels kernels);
+};
+
+// Every measure. A new one is a header in measures/ and a line in this table.
+std::span<const MeasureEntry> measures();
+std::unique_ptr<MeasureFamily> make_family(std::string_view measure, Kernels kernels = Kernels::packets);
 
 }  // namespace vivify::sim

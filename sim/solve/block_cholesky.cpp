@@ -214,6 +214,18 @@ double sum(Vector v) {
   return _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)));
 }
 
+// Adds `count` entries; may add zeros to the next three.
+void add(double* to, const double* from, int count) {
+  for (; count >= kLanes; count -= kLanes, to += kLanes, from += kLanes) {
+    _mm256_storeu_pd(to, _mm256_add_pd(_mm256_loadu_pd(to), _mm256_loadu_pd(from)));
+  }
+  if (count == 0) return;
+  alignas(32) static constexpr long kMasks[2 * kLanes] = {-1, -1, -1, -1, 0, 0, 0, 0};
+  const __m256i mask = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMasks + kLanes - count));
+  const Vector kept = _mm256_and_pd(_mm256_loadu_pd(from), _mm256_castsi256_pd(mask));
+  _mm256_storeu_pd(to, _mm256_add_pd(_mm256_loadu_pd(to), kept));
+}
+
 // Columns of a panel that are eliminated at once, rows and columns of one step of an update, and of a
 // solution with many right-hand sides.
 constexpr int kPanelColumns = 4;
@@ -361,21 +373,23 @@ void BlockCholesky::make_targets() {
     const int* rows = rows_.data() + panel.row_begin;
     for (int i = 0; i < below;) {
       const Panel& target = panels_[panel_of[rows[i] / dim_]];
-      const int map = static_cast<int>(places_.size()) - i / dim_;
       const int* target_rows = rows_.data() + target.row_begin;
       const int* target_end = target_rows + (target.height - target.width);
       const int* found = target_rows;
+      int run = static_cast<int>(runs_.size());
       for (int j = i; j < below; j += dim_) {
-        if (rows[j] < target.first + target.width) {
-          places_.push_back(rows[j] - target.first);
-        } else {
+        int place = rows[j] - target.first;
+        if (place >= target.width) {
           found = std::lower_bound(found, target_end, rows[j]);
-          places_.push_back(target.width + static_cast<int>(found - target_rows));
+          place = target.width + static_cast<int>(found - target_rows);
         }
+        if (j == i || runs_.back().shift != place - j) runs_.push_back({j, j, place - j});
+        runs_.back().end += dim_;
       }
       for (; i < below && rows[i] < target.first + target.width; i += dim_) {
-        targets_.push_back(
-            {target.value_begin + long(rows[i] - target.first) * target.stride, target.stride, map});
+        while (runs_[run].end <= i) ++run;
+        targets_.push_back({target.value_begin + long(rows[i] - target.first) * target.stride, target.stride, run,
+                            static_cast<int>(runs_.size())});
       }
     }
   }
@@ -424,24 +438,18 @@ void BlockCholesky::update_targets(const Panel& panel) {
       for (; row + kLanes < count; row += 2 * kLanes) multiply(std::integral_constant<int, 2>(), row);
       if (row < count) multiply(std::integral_constant<int, 1>(), row);
     });
-    with_constant<3>(dim_, [&](auto constant) {
-      constexpr int kDim = constant();
-      const int last = below / kDim;
-      for (int column = 0; column < columns; column += kDim) {
-        const int vertex = (begin + column) / kDim;
-        const Target& target = targets_[panel.row_begin / kDim + vertex];
-        const int* places = places_.data() + target.map;
-        double* to = values_.data() + target.column;
-        const double* from = product + long(column) * stride - begin;
-        for (int i = vertex; i < last; ++i) {
-          double* place = to + places[i];
-          for (int c = 0; c < kDim; ++c) {
-            for (int r = 0; r < kDim; ++r)
-              place[long(c) * target.stride + r] += from[long(c) * stride + kDim * i + r];
-          }
+    for (int column = 0; column < columns; column += dim_) {
+      const int first = begin + column;
+      const Target& target = targets_[(panel.row_begin + first) / dim_];
+      double* to = values_.data() + target.column;
+      const double* from = product + long(column) * stride - begin;
+      for (const Run* run = runs_.data() + target.first_run; run != runs_.data() + target.last_run; ++run) {
+        const int row = std::max(run->begin, first);
+        for (int i = 0; i < dim_; ++i) {
+          add(to + long(i) * target.stride + row + run->shift, from + long(i) * stride + row, run->end - row);
         }
       }
-    });
+    }
   }
 }
 

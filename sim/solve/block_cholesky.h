@@ -43,11 +43,15 @@ class BlockCholesky {
     int row_begin;     // in rows_ and, divided by dim, in targets_
     long value_begin;  // in values_
   };
-  // Where the columns of one vertex among the rows of a panel are updated.
+  // Rows begin … end − 1 below the columns of a panel, which are rows begin + shift … of a target.
+  struct Run {
+    int begin, end, shift;
+  };
+  // Where the update of the columns of one vertex among the rows of a panel goes.
   struct Target {
     long column;  // first of the columns, in values_
     int stride;
-    int map;  // places_[map + i]: row in the target of the i-th vertex among the rows of the panel
+    int first_run, last_run;  // in runs_
   };
 
   void make_panels(const Eigen::SparseMatrix<double>& lower);
@@ -65,7 +69,7 @@ class BlockCholesky {
   std::vector<Panel> panels_;
   std::vector<int> rows_;        // of all panels, below their columns
   std::vector<Target> targets_;  // of each vertex in rows_
-  std::vector<int> places_;
+  std::vector<Run> runs_;
   std::vector<long> slots_;  // place in values_ of every value of the matrix
   long nonzeros_ = 0;
   double flops_ = 0;

@@ -1,27 +1,25 @@
 // Factorisation of a symmetric matrix whose pattern never changes: analysed once, factorised per iteration.
 #pragma once
 
-#include <Eigen/SparseCholesky>
-
+#include "sim/solve/block_cholesky.h"
 #include "sim/solve/sparse_matrix.h"
 
 namespace vivify::sim {
 
-// Eigen's simplicial LDLᵀ: the same bits for any number of threads and any BLAS
-// (docs/decisions/0002-determinism.md).
 class LinearSolver {
  public:
-  explicit LinearSolver(const SymmetricPattern& pattern) { ldlt_.analyzePattern(pattern.zeros()); }
+  explicit LinearSolver(const SymmetricPattern& pattern) : factor_(pattern.zeros(), pattern.dimension()) {}
 
   // True when the matrix is positive definite; only then may solve() be called.
-  bool factorize(const SymmetricMatrix& matrix) {
-    ldlt_.factorize(matrix.lower());
-    return ldlt_.info() == Eigen::Success && ldlt_.vectorD().minCoeff() > 0;
+  bool factorize(const SymmetricMatrix& matrix) { return factor_.factorize(matrix.lower().valuePtr()); }
+  // Solutions for the columns of rhs, all at once.
+  Eigen::MatrixXd solve(Eigen::MatrixXd rhs) const {
+    factor_.solve_in_place(rhs);
+    return rhs;
   }
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const { return ldlt_.solve(rhs); }
 
  private:
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
+  BlockCholesky factor_;
 };
 
 }  // namespace vivify::sim

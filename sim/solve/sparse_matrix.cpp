@@ -14,11 +14,12 @@ void SymmetricPattern::couple(const int* vertices, int count) {
 
 void SymmetricPattern::finish() {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(9 * blocks_.size());
+  const int d = dimension_;
+  entries.reserve(static_cast<std::size_t>(d * d) * blocks_.size());
   for (const auto& [column, row] : blocks_) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        if (3 * row + i >= 3 * column + j) entries.emplace_back(3 * row + i, 3 * column + j, 0.0);
+    for (int i = 0; i < d; ++i) {
+      for (int j = 0; j < d; ++j) {
+        if (d * row + i >= d * column + j) entries.emplace_back(d * row + i, d * column + j, 0.0);
       }
     }
   }
@@ -35,10 +36,11 @@ int SymmetricPattern::slot(int row, int column) const {
 }
 
 void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<int>& slots) const {
-  for (int column = 0; column < 3 * count; ++column) {
-    for (int row = column; row < 3 * count; ++row) {
-      const int global_row = 3 * vertices[row / 3] + row % 3,
-                global_column = 3 * vertices[column / 3] + column % 3;
+  const int d = dimension_;
+  for (int column = 0; column < d * count; ++column) {
+    for (int row = column; row < d * count; ++row) {
+      const int global_row = d * vertices[row / d] + row % d,
+                global_column = d * vertices[column / d] + column % d;
       slots.push_back(slot(std::max(global_row, global_column), std::min(global_row, global_column)));
     }
   }

@@ -9,21 +9,22 @@
 
 namespace vivify::sim {
 
-// The lower triangle of a symmetric matrix of 3 by 3 vertex blocks.
+// The lower triangle of a symmetric matrix of vertex blocks, dimension by dimension.
 class SymmetricPattern {
  public:
-  explicit SymmetricPattern(int vertex_count) : vertex_count_(vertex_count) {}
+  SymmetricPattern(int vertex_count, int dimension) : vertex_count_(vertex_count), dimension_(dimension) {}
 
   // All pairs of the given vertices may be coupled.
   void couple(const int* vertices, int count);
   // Ends the collection; needed before slot().
   void finish();
 
-  int size() const { return 3 * vertex_count_; }
+  int dimension() const { return dimension_; }
+  int size() const { return dimension_ * vertex_count_; }
   // Place of entry (row, column) of the lower triangle (row >= column) in the array of values; -1 if not in
   // the pattern.
   int slot(int row, int column) const;
-  // Places of the lower triangle of the block of `count` vertices, column by column of the 3·count block.
+  // Places of the lower triangle of the block of `count` vertices, column by column of it.
   void append_slots(const int* vertices, int count, std::vector<int>& slots) const;
 
   // A matrix of zeros with this pattern.
@@ -31,6 +32,7 @@ class SymmetricPattern {
 
  private:
   int vertex_count_;
+  int dimension_;
   std::set<std::pair<int, int>> blocks_;  // (column vertex, row vertex), row >= column
   Eigen::SparseMatrix<double> zeros_;
 };

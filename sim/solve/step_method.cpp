@@ -19,8 +19,9 @@ double raise_damping(double mu) { return std::max(1e-2, 6 * mu); }
 double lower_damping(double mu) { return mu < 1e-6 ? 0 : mu / 5; }
 
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
-  const double largest = (problem.body().rest.basis * dq).lpNorm<Eigen::Infinity>();
-  const double allowed = kLargestChange * problem.body().height;
+  const RestSpace& space = *problem.body().rest;
+  const double largest = (space.basis() * dq).lpNorm<Eigen::Infinity>();
+  const double allowed = kLargestChange * space.unit();
   if (largest > allowed) dq *= allowed / largest;
   return dq;
 }

@@ -41,7 +41,7 @@ StepSolution solve_reduced(const StepProblem&, const Eigen::VectorXd& q, const E
 inline constexpr double kSmallestDeformed =
     0.05;  // trials that squeeze an element below this share of its size fail
 inline constexpr double kSmallestRest = 0.2;
-inline constexpr double kLargestChange = 0.1;  // of a parameter in one iteration, in body heights
+inline constexpr double kLargestChange = 0.1;  // of a parameter in one iteration, in units of the rest space
 inline constexpr int kMaxDampings = 8;         // raises of the Levenberg–Marquardt parameter before halving
 inline constexpr int kMaxStepHalvings = 10;
 double raise_damping(double mu);  // after a refused trial

@@ -34,10 +34,30 @@ TEST(Mesh, VolumesOfTheCubeAddUp) {
 }
 
 TEST(Mesh, LumpedMassIsTheMassOfTheBody) {
-  const Eigen::VectorXd mass = lumped_mass(cube(), 700);
+  const SimMesh mesh = sim_mesh(cube());
+  const Eigen::VectorXd mass = lumped_mass(mesh, 700 * element_sizes(mesh));
   EXPECT_NEAR(mass.sum(), 700, 1e-10);
   EXPECT_NEAR(mass(0), 700 / 4.0, 1e-10);   // on the diagonal: in all six
   EXPECT_NEAR(mass(1), 700 / 12.0, 1e-10);  // in two
+}
+
+TEST(Mesh, SizesOfElements) {
+  SimMesh plane;
+  plane.V.resize(3, 2);
+  plane.V << 0, 0, 3, 0, 0, 4;
+  plane.E.resize(2, 3);
+  plane.E << 0, 1, 2, 0, 2, 1;
+  EXPECT_EQ(element_sizes(plane), Eigen::Vector2d(6, -6));
+  SimMesh rod = plane;
+  rod.E.resize(1, 2);
+  rod.E << 1, 2;
+  EXPECT_EQ(element_sizes(rod)[0], 5);
+  EXPECT_EQ(lumped_mass(rod, Eigen::VectorXd::Constant(1, 8.0)), Eigen::Vector3d(0, 4, 4));
+  SimMesh shell;
+  shell.V = Eigen::MatrixXd::Identity(3, 3);
+  shell.E.resize(1, 3);
+  shell.E << 0, 2, 1;
+  EXPECT_NEAR(element_sizes(shell)[0], std::sqrt(3) / 2, 1e-15);
 }
 
 TEST(Mesh, NormalsOfTheCubePointOutward) {

@@ -150,7 +150,7 @@ TEST(BlockSolver, DampingTurnsTheStepToTheGradient) {
 }
 
 TEST(LinearSolver, TellsIndefiniteMatrices) {
-  SymmetricPattern pattern(2);
+  SymmetricPattern pattern(2, 3);
   const std::array<int, 2> pair = {0, 1};
   pattern.couple(pair.data(), 2);
   pattern.finish();

@@ -189,7 +189,7 @@ TEST(ContactPoints, HalfOfThemStandOnTheGroundAndAllAreSpread) {
     vertices.row(i) << i, 0, 0, 0;
     weights.row(i) << 1, 0, 0, 0;
   }
-  const ContactPoints points = select_contact_points(mesh.V, vertices, weights, 24);
+  const ContactPoints points = select_contact_points(mesh.V, vertices, weights, 3, 24);
   ASSERT_EQ(points.size(), 24);
   const Vector x = flat(mesh.V);
   EXPECT_GE(count_standing_points(points, x), 12);
@@ -204,7 +204,7 @@ TEST(ContactPoints, HalfOfThemStandOnTheGroundAndAllAreSpread) {
       nearest = std::min(nearest, (points.position(i, x) - corner).norm());
     EXPECT_LE(nearest, 0.3);
   }
-  EXPECT_EQ(select_contact_points(mesh.V, vertices, weights, 1000).size(), mesh.V.rows());
+  EXPECT_EQ(select_contact_points(mesh.V, vertices, weights, 3, 1000).size(), mesh.V.rows());
 }
 
 }  // namespace

@@ -143,8 +143,10 @@ Value settings(const Schema& schema, const std::string& yaml) {
 
 BodyInput box_input(const TetMesh& mesh, const Scene& scene) {
   return {"box",
-          mesh,
+          sim_mesh(mesh),
+          "cage",
           trilinear_weights(mesh.V),
+          {},
           vertex_contacts(mesh),
           settings(model_schema(), scene.model),
           settings(regularizer_schema(), scene.regularizer),
@@ -272,7 +274,7 @@ RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
     }
   }
   x = rigid(tilt, {0, 0, 0}, lying);
-  q = random_vector(body.rest.free_parameters(), 0.02, rng);
+  q = random_vector(body.rest->free_parameters(), 0.02, rng);
   const Vector q_n = q + random_vector(q.size(), 0.01, rng);
   const Vector x_tilde = x + random_vector(x.size(), 0.005, rng);
 
@@ -316,7 +318,7 @@ RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
         {spin_weights(body.mass, x_tilde, Eigen::Vector3d::Unit(axis)), 0, 0.3 * kd, 0, rng.uniform(-1, 1)});
   }
   goals = make_goals(wanted, x_tilde, world.h);
-  problem = std::make_unique<StepProblem>(body, contacts, goals, x_tilde, q_n, world.h);
+  problem = std::make_unique<StepProblem>(body, contacts, goals, x, x_tilde, q_n, world.h);
   workspace = std::make_unique<StepWorkspace>(*body.pattern);
 }
 

@@ -51,7 +51,7 @@ std::vector<Collider> one(Collider collider);
 void set_motion(World& world, const Vector& x, const Vector& v);
 
 Vector flat(const Points& V);
-Points rows(const Vector& x);
+Points rows(const Vector& x);  // of bodies in space
 Vector random_vector(Eigen::Index size, double scale, CounterRng& rng);
 Eigen::Matrix3d random_rotation(CounterRng& rng);
 // R x_i + b for every point.

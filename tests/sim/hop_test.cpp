@@ -16,7 +16,7 @@ struct Hopper {
   explicit Hopper(const std::string& yaml =
                       "{type: hop, crouch_depth: 0.02, crouch_s: 0.25, thrust_s: 0.15, land_s: 0.25}")
       : mesh(standing_box()),
-        mass(lumped_mass(mesh, 300)),
+        mass(lumped_mass(sim_mesh(mesh), 300 * tet_volumes(mesh))),
         rest(flat(mesh.V)),
         body{mass, rest, 1, 9.81, 0.02},
         controller(make_controller(body, settings(controller_schema(), yaml))) {}

@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Friction, Derivatives, ::testing::Values(1.0, 0.3, INFI
 TEST(Regularizer, IsZeroAtTheInitialShapeAndAfterNoChange) {
   const RandomStep step(3, 1);
   const Vector zero = Vector::Zero(step.q.size());
-  const StepProblem still(step.body, step.contacts, step.goals, step.x, zero, 1.0 / 48);
+  const StepProblem still(step.body, step.contacts, step.goals, step.x, step.x, zero, 1.0 / 48);
   const RestPoint rest = still.rest_point(zero, true);
   EXPECT_EQ(rest.regularizer, 0);
   EXPECT_EQ(still.regularizer_gradient(rest).norm(), 0);
@@ -213,12 +213,13 @@ TEST(StepProblem, InertiaAndGravityGiveImplicitEuler) {
   // Without deformation and contact, c = M (x − x̃) / h².
   const BodyModel body = make_body_model(box_input(small_box()), {});
   const ContactSet none;
-  const Goals no_goals = make_goals({}, body.rest.X0, 0.01);
+  const Goals no_goals = make_goals({}, flat(small_box().V), 0.01);
   CounterRng rng(2);
-  const Vector x_tilde = body.rest.X0 + Vector::Constant(body.rest.X0.size(), 0.3);
-  const StepProblem problem(body, none, no_goals, x_tilde, Vector::Zero(body.rest.free_parameters()), 0.01);
-  const Vector c = problem.residual(problem.deformed_point(body.rest.X0),
-                                    problem.rest_point(Vector::Zero(body.rest.free_parameters()), false));
+  const Vector x_tilde = flat(small_box().V) + Vector::Constant(flat(small_box().V).size(), 0.3);
+  const StepProblem problem(body, none, no_goals, x_tilde, x_tilde,
+                            Vector::Zero(body.rest->free_parameters()), 0.01);
+  const Vector c = problem.residual(problem.deformed_point(flat(small_box().V)),
+                                    problem.rest_point(Vector::Zero(body.rest->free_parameters()), false));
   for (Eigen::Index i = 0; i < body.mass.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(c[3 * i + axis], -0.3 * body.mass[i] / 1e-4, 1e-9);
   }

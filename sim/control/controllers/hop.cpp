@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kHeightFrequency = 6;   // ω of the height goal, 1/s (k_p = ω k_d)
 constexpr double kUprightFrequency = 8;  // wanted turning rate per radian of tilt, 1/s
-constexpr double kSpinWeight = 10;       // of the spin goals, relative to the inertia of the body
 constexpr double kSoftWeight = 0.3;      // of landing and crouching, relative to the thrust
 constexpr double kTouchLoad = 0.05;      // share of the weight that counts as standing on the ground
 constexpr double kFall = 0.6;            // largest downward acceleration of a crouch, in g
@@ -40,7 +39,8 @@ class HopController final : public Controller {
         crouch_depth_(settings["crouch_depth"].as_number() * body.height),
         crouch_s_(settings["crouch_s"].as_number()),
         thrust_s_(settings["thrust_s"].as_number()),
-        land_s_(settings["land_s"].as_number()) {
+        land_s_(settings["land_s"].as_number()),
+        upright_(settings["upright"].as_number()) {
     const double heading = settings["heading_deg"].as_number() * std::numbers::pi / 180;
     forward_ = Eigen::Vector3d(std::sin(heading), 0, std::cos(heading));
     face_heading_ = settings["face_heading"].as_bool();
@@ -163,8 +163,11 @@ class HopController final : public Controller {
     if (phase == kCrouch || phase == kLand) ground_height_ = lowest_vertex(now.x) + rest_rise_;
   }
 
-  static double lowest_vertex(const Eigen::VectorXd& x) {
-    return Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<3>>(x.data() + 1, x.size() / 3).minCoeff();
+  double lowest_vertex(const Eigen::VectorXd& x) const {
+    double lowest = INFINITY;
+    const int d = body_.dimension();
+    for (Eigen::Index i = 1; i < x.size(); i += d) lowest = std::min(lowest, x[i]);
+    return lowest;
   }
 
   void advance_phase(bool standing, const Observation& now) {
@@ -191,27 +194,30 @@ class HopController final : public Controller {
 
   void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency,
                   double sx, double sv) const {
-    goals.push_back({centre_of_mass_weights(body_.mass, direction), frequency * kd, kd, sx, sv});
+    goals.push_back(
+        {centre_of_mass_weights(body_.mass, direction, body_.dimension()), frequency * kd, kd, sx, sv});
   }
 
   // Turns the body upright, and its face towards the heading when asked.
   void add_upright(std::vector<Goal>& goals, const Eigen::VectorXd& x, double scale) const {
+    if (upright_ == 0) return;
     const Eigen::Matrix3d R = best_rotation(body_.mass, body_.rest, x);
     Eigen::Vector3d rate = kUprightFrequency * (R * Eigen::Vector3d::UnitY()).cross(Eigen::Vector3d::UnitY());
     const Eigen::Vector3d front = R * Eigen::Vector3d::UnitZ();
     const double yaw = std::atan2(front.x(), front.z());
     const double wanted = face_heading_ ? heading_ : 0;
     rate.y() = std::clamp(kUprightFrequency * std::remainder(wanted - yaw, 2 * std::numbers::pi), -2.0, 2.0);
-    const double inertia = inertia_tensor(body_.mass, x).trace() / 3;
-    const double kd = std::sqrt(scale * kSpinWeight * inertia);
-    for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Matrix3d inertia = inertia_tensor(body_.mass, x);
+    const bool planar = body_.dimension() == 2;
+    const double kd = std::sqrt(scale * upright_ * (planar ? inertia(2, 2) : inertia.trace() / 3));
+    for (int axis = planar ? 2 : 0; axis < 3; ++axis) {
       const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
       goals.push_back({spin_weights(body_.mass, x, direction), 0, kd, 0, rate[axis]});
     }
   }
 
   ControlledBody body_;
-  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_;
+  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_;
   Eigen::Vector3d forward_;
   bool face_heading_ = false;
   double heading_ = 0, take_off_ = 0, speed_ = 0;
@@ -249,13 +255,23 @@ Schema hop_controller_schema() {
       .field("effort",
              number("Weight of the centre-of-mass goals against the cost of changing the rest shape.")
                  .above(0)
-                 .initially(1));
+                 .initially(1))
+      .field("upright", number("Weight of the goals that turn the body upright, relative to its inertia; 0 "
+                               "leaves the centre of mass as the only goal.")
+                            .at_least(0)
+                            .initially(10));
 }
 
 std::unique_ptr<Controller> make_hop_controller(const ControlledBody& body, const Value& settings) {
   if (!(body.gravity > 0)) {
     throw Error(ErrorKind::usage, "a hop needs gravity that points down (-y)",
                 "change gravity or the controller", settings.where());
+  }
+  const double heading = settings["heading_deg"].as_number() * std::numbers::pi / 180;
+  if (body.dimension() == 2 && std::abs(std::sin(heading)) < 0.99) {
+    throw Error(ErrorKind::usage,
+                "a body of the plane travels along x: controller.heading_deg must be 90 or -90",
+                "90 is to the right (+x)", settings["heading_deg"].where());
   }
   return std::make_unique<HopController>(body, settings);
 }

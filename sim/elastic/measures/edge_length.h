@@ -2,37 +2,58 @@
 // tetrahedron of Coros et al. 2012, Appendix A.
 #pragma once
 
-#include <Eigen/Core>
+#include "sim/elastic/measures/measure.h"
 
 namespace vivify::sim {
 
 template <int Dim>
-struct EdgeLength {
-  static constexpr int kPoints = 2;
-  static constexpr int kSize = kPoints * Dim;
-  static constexpr bool kMeasuresSize = false;
-  using Stencil = Eigen::Matrix<double, Dim, kPoints>;  // one column per point
-  using Gradient = Eigen::Matrix<double, kSize, 1>;
-  using Hessian = Eigen::Matrix<double, kSize, kSize>;
+struct EdgeLength : MeasureBase<Dim, 2> {
+  using Base = MeasureBase<Dim, 2>;
+  template <class T>
+  using Stencil = typename Base::template Stencil<T>;
+  template <class T>
+  using Values = typename Base::template Values<T>;
+  template <class T>
+  using Gradients = typename Base::template Gradients<T>;
+  template <class T>
+  using Hessian = typename Base::template Hessian<T>;
+  template <class T>
+  using Direction = typename Base::template Direction<T>;
+  template <class T>
+  using Parameters = typename Base::template Parameters<T>;
 
-  static double value(const Stencil& x) { return (x.col(1) - x.col(0)).squaredNorm(); }
+  template <class T>
+  static Values<T> values(const Stencil<T>& x, const Parameters<T>&) {
+    return Values<T>((x.col(1) - x.col(0)).squaredNorm());
+  }
 
-  static Gradient gradient(const Stencil& x) {
-    const Eigen::Matrix<double, Dim, 1> twice_edge = 2 * (x.col(1) - x.col(0));
-    Gradient g;
-    g << -twice_edge, twice_edge;
+  template <class T>
+  static Gradients<T> gradients(const Stencil<T>& x, const Parameters<T>&) {
+    Gradients<T> g;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const T slope = T(2) * (x(axis, 1) - x(axis, 0));
+      g[axis] = -slope;
+      g[Dim + axis] = slope;
+    }
     return g;
   }
 
-  static Hessian hessian(const Stencil&) {
-    const auto identity = Eigen::Matrix<double, Dim, Dim>::Identity();
-    Hessian H;
-    H << 2 * identity, -2 * identity, -2 * identity, 2 * identity;
+  template <class T>
+  static Hessian<T> hessian(const Stencil<T>&, const Parameters<T>&, const Values<T>& w) {
+    Hessian<T> H = Hessian<T>::Zero();
+    const T twice = T(2) * w[0];
+    for (int axis = 0; axis < Dim; ++axis) {
+      H(axis, axis) = H(Dim + axis, Dim + axis) = twice;
+      H(axis, Dim + axis) = H(Dim + axis, axis) = -twice;
+    }
     return H;
   }
 
-  // ∇³s[l]: the length squared is quadratic.
-  static Hessian third(const Stencil&, const Gradient&) { return Hessian::Zero(); }
+  // The length squared is quadratic.
+  template <class T>
+  static Hessian<T> third(const Stencil<T>&, const Parameters<T>&, const Values<T>&, const Direction<T>&) {
+    return Hessian<T>::Zero();
+  }
 };
 
 }  // namespace vivify::sim
