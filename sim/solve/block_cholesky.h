@@ -4,65 +4,68 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "sim/solve/elimination_fronts.h"
+
 namespace vivify::sim {
 
-// Right-looking supernodal LDLᵀ without pivoting, for hundreds to thousands of degrees of freedom. Ordering
-// and elimination tree are those of the graph of vertices; columns with (almost) the same rows are kept as
-// one dense panel and handled by AVX2 kernels. One thread, no BLAS, every sum in a fixed order: always the
-// same bits.
+// Supernodal and right-looking, without pivoting, for tens to thousands of degrees of freedom: each front of
+// the elimination is a dense panel, handled by AVX2 kernels. One thread, no BLAS, every sum in a fixed order:
+// always the same bits (docs/decisions/0002-determinism.md).
 class BlockCholesky {
  public:
-  // `lower` is the lower triangle, columns sorted, of the matrices to come; rows dim·v … dim·v + dim − 1
+  // `lower` is the lower triangle of the matrices to come, columns sorted; rows dim·v … dim·v + dim − 1
   // belong to vertex v.
   BlockCholesky(const Eigen::SparseMatrix<double>& lower, int dim);
 
-  // Takes the values of a matrix in the order of the pattern. Returns false at the first pivot that is not
-  // positive: the matrix is not positive definite, and solve() must not be called.
+  // Takes the values of a matrix in the order of the pattern. False at the first pivot that is not positive:
+  // the matrix is not positive definite, and solve_in_place() must not be called.
   bool factorize(const double* values);
   // Replaces the columns of x, #size by any number, by the solutions.
   void solve_in_place(Eigen::Ref<Eigen::MatrixXd> x) const;
 
-  // Signs of all pivots, which are those of the eigenvalues (Sylvester). Ends the validity of solve().
+  // Signs of all pivots, which are those of the eigenvalues (Sylvester). Replaces the factorisation.
   struct Inertia {
     int negative = 0, zero = 0, positive = 0;
   };
   Inertia inertia(const double* values);
 
   int size() const { return size_; }
-  // Entries kept of L, with its diagonal and the zeros that the panels hold.
-  long nonzeros() const { return nonzeros_; }
-  // Multiplications and additions of one factorisation.
-  double flops() const { return flops_; }
   int panel_count() const { return static_cast<int>(panels_.size()); }
+  // Entries kept of L, with its diagonal and the zeros inside the panels.
+  long nonzeros() const;
+  // Multiplications and additions of one factorisation.
+  double flops() const;
 
  private:
-  // Columns first … first + width − 1 of L with the same rows: a dense array of `stride` (a multiple of 4) by
-  // width, whose rows are the columns themselves and then rows_[row_begin …].
+  // Columns first … first + width − 1 of L: a dense array of `stride` (a multiple of 4) by width, whose rows
+  // are the columns themselves and then rows_[row_begin …]. On and above the diagonal it holds no meaning.
   struct Panel {
     int first, width, height, stride;
     int row_begin;     // in rows_ and, divided by dim, in targets_
     long value_begin;  // in values_
+
+    int below() const { return height - width; }
   };
-  // Rows begin … end − 1 below the columns of a panel, which are rows begin + shift … of a target.
+  // Rows begin … end − 1 below the columns of a panel are rows begin + shift … of another.
   struct Run {
     int begin, end, shift;
   };
   // Where the update of the columns of one vertex among the rows of a panel goes.
   struct Target {
-    long column;  // first of the columns, in values_
+    long column;  // the first of the columns, in values_
     int stride;
-    int first_run, last_run;  // in runs_
+    int first_run, last_run;  // of the rows from the vertex on, in runs_
   };
 
-  void make_panels(const Eigen::SparseMatrix<double>& lower);
-  void make_targets();
+  void make_panels(const Elimination& elimination);
+  void make_slots(const Eigen::SparseMatrix<double>& lower, const std::vector<int>& panel_of);
+  void make_targets(const std::vector<int>& panel_of);
   template <bool kToTheEnd>
   bool factorize(const double* values);
-  template <bool kToTheEnd>
-  bool factorize_panel(const Panel& panel);
   void update_targets(const Panel& panel);
   void solve_one(double* x) const;
-  void solve_many(double* x, int count) const;
+  template <int kVectors>
+  void solve_columns(double* x, long count) const;
 
   int dim_, size_;
   std::vector<int> position_;  // of each vertex in the order of elimination
@@ -71,8 +74,7 @@ class BlockCholesky {
   std::vector<Target> targets_;  // of each vertex in rows_
   std::vector<Run> runs_;
   std::vector<long> slots_;  // place in values_ of every value of the matrix
-  long nonzeros_ = 0;
-  double flops_ = 0;
+  int most_rows_ = 0;        // of a panel
 
   std::vector<double> values_, pivots_, inverse_pivots_;
   std::vector<double> packed_, product_;  // scratch of the factorisation

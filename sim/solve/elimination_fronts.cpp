@@ -33,8 +33,8 @@ Graph vertex_graph(const Eigen::SparseMatrix<double>& lower, int dim) {
   return graph;
 }
 
-// Vertices in the order of approximate minimum degree; `numbering` lists the vertices in the order that decides
-// ties.
+// Vertices in the order of approximate minimum degree; `numbering` lists the vertices in the order that
+// decides ties.
 std::vector<int> minimum_degree_order(const Graph& graph, const std::vector<int>& numbering) {
   const int count = static_cast<int>(graph.size());
   std::vector<int> number(graph.size());

@@ -6,7 +6,8 @@
 
 namespace vivify::sim {
 
-// Vertices whose columns of L are eliminated together. `rows` are the later vertices in those columns, ascending.
+// Vertices whose columns of L are eliminated together. `rows` are the later vertices in those columns,
+// ascending.
 struct Front {
   std::vector<int> columns, rows;
 };
@@ -17,8 +18,8 @@ struct Elimination {
   std::vector<Front> fronts;
 };
 
-// Chooses the order on the graph of vertices (rows dim·v … dim·v + dim − 1 of the matrix belong to vertex v) so
-// that a factorisation over dense fronts is estimated to be quick. Always the same for the same pattern.
+// Chooses the order on the graph of vertices (rows dim·v … dim·v + dim − 1 of the matrix belong to vertex v)
+// so that a factorisation over dense fronts is estimated to be quick. Always the same for the same pattern.
 Elimination order_elimination(const Eigen::SparseMatrix<double>& lower, int dim);
 
 // Multiplications and additions that eliminate `width` columns with `below` rows under them and update the
