@@ -1,0 +1,233 @@
+#include "sim/pose.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/error.h"
+#include "common/text.h"
+#include "sim/control/rigid_motion.h"
+#include "sim/solve/static_solve.h"
+
+namespace vivify::sim {
+namespace {
+
+constexpr double kLargestTurn = 10 * std::numbers::pi / 180;  // of a handle in one increment, rad
+constexpr double kLargestMove = 0.1;                          // in one increment, of the body's diagonal
+constexpr double kLargestScale = 0.1;                         // in one increment, of the factor's logarithm
+constexpr int kMaxHalvings = 6;                               // of an increment
+constexpr double kSmallestElement = 0.01;                     // of its size at rest
+constexpr double kSwelling = 0.01;      // the unit of force is what it takes to swell the body by this share
+constexpr double kTolerance = 1e-7;     // in that unit
+constexpr double kRegionMargin = 1e-9;  // of the bounding box: points on the face of a region belong to it
+
+// A handle with its vertices, and its place at a share t of its way.
+class Grip {
+ public:
+  Grip(const Handle& handle, const RowMatrixXd& V) : handle_(handle) {
+    const Eigen::Index d = V.cols();
+    const Eigen::RowVectorXd low = V.colwise().minCoeff(), size = V.colwise().maxCoeff() - low;
+    std::vector<bool> chosen(static_cast<std::size_t>(V.rows()), false);
+    for (const int v : handle.vertices) {
+      if (v < 0 || v >= V.rows()) {
+        throw Error(ErrorKind::usage, handle.name + " names vertex " + std::to_string(v) +
+                                          ", and the simulation mesh has " + std::to_string(V.rows()));
+      }
+      chosen[static_cast<std::size_t>(v)] = true;
+    }
+    const auto share = [&](const Eigen::Vector3d& corner, double margin) -> Eigen::RowVectorXd {
+      return low + (corner.head(d).array() + margin).matrix().transpose().cwiseProduct(size);
+    };
+    const Eigen::RowVectorXd from = share(handle.min, -kRegionMargin), to = share(handle.max, kRegionMargin);
+    for (int v = 0; v < static_cast<int>(V.rows()); ++v) {
+      const bool inside = (V.row(v).array() >= from.array()).all() && (V.row(v).array() <= to.array()).all();
+      if (inside || chosen[static_cast<std::size_t>(v)]) vertices_.push_back(v);
+    }
+    if (vertices_.empty()) {
+      throw Error(ErrorKind::usage, handle.name + " takes hold of no vertex",
+                  "make its region larger; regions are shares of the bounding box of the body");
+    }
+    if (handle.angle != 0 && d == 3 && !(handle.axis.norm() > 0)) {
+      throw Error(ErrorKind::usage, handle.name + " turns about an axis without length");
+    }
+    if (!(handle.scale.minCoeff() > 0)) {
+      throw Error(ErrorKind::usage, handle.name + " has a scale that is not above 0");
+    }
+    axis_ = d == 3 ? handle.axis.normalized() : Eigen::Vector3d::UnitZ();
+    Eigen::RowVectorXd about = Eigen::RowVectorXd::Zero(d);
+    if (handle.about) {
+      about = share(*handle.about, 0);
+    } else {
+      const RowMatrixXd held = V(vertices_, Eigen::all);
+      about = (held.colwise().minCoeff() + held.colwise().maxCoeff()) / 2;
+    }
+    for (Eigen::Index k = 0; k < d; ++k) about_[k] = about[k];
+  }
+
+  const std::vector<int>& vertices() const { return vertices_; }
+
+  // How many increments the whole way takes.
+  double increments(double diagonal) const {
+    return std::max({std::abs(handle_.angle) / kLargestTurn, handle_.move.norm() / (kLargestMove * diagonal),
+                     handle_.scale.array().log().abs().maxCoeff() / kLargestScale});
+  }
+
+  void place(const RowMatrixXd& V, double t, Eigen::VectorXd& x) const {
+    const Eigen::Index d = V.cols();
+    const Eigen::AngleAxisd turn(t * handle_.angle, axis_);
+    const Eigen::Vector3d scale = (t * handle_.scale.array().log()).exp();
+    for (const int v : vertices_) {
+      Eigen::Vector3d arm = -about_;
+      for (Eigen::Index k = 0; k < d; ++k) arm[k] += V(v, k);
+      const Eigen::Vector3d y = about_ + turn * scale.cwiseProduct(arm) + t * handle_.move;
+      for (Eigen::Index k = 0; k < d; ++k) x[d * v + k] = y[k];
+    }
+  }
+
+ private:
+  const Handle& handle_;
+  std::vector<int> vertices_;
+  Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), axis_;
+};
+
+class PoseSolver {
+ public:
+  PoseSolver(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
+             const Eigen::Vector3d& gravity)
+      : rest_(rest),
+        model_(build_model(rest, RestLayout::compatible, model)),
+        pattern_(static_cast<int>(rest.V.rows()), rest.dimension()),
+        held_(static_cast<std::size_t>(rest.V.rows()), false) {
+    const int d = rest.dimension();
+    std::vector<int> holder(held_.size(), -1);
+    for (const Handle& handle : handles) {
+      grips_.emplace_back(handle, rest.V);
+      for (const int v : grips_.back().vertices()) {
+        int& other = holder[static_cast<std::size_t>(v)];
+        if (other >= 0) {
+          throw Error(ErrorKind::usage,
+                      handles[static_cast<std::size_t>(other)].name + " and " + handle.name +
+                          " both take hold of vertex " + std::to_string(v),
+                      "make their regions smaller");
+        }
+        other = static_cast<int>(grips_.size()) - 1;
+        held_[static_cast<std::size_t>(v)] = true;
+      }
+    }
+    if (grips_.empty()) throw Error(ErrorKind::usage, "a pose needs at least one handle");
+
+    for (const auto& family : model_.families) family->reserve(pattern_);
+    for (int v = 0; v < rest.V.rows(); ++v) pattern_.couple(&v, 1);
+    pattern_.finish();
+    for (const auto& family : model_.families) family->bind(pattern_);
+    rest_x_ = Eigen::Map<const Eigen::VectorXd>(rest.V.data(), rest.V.size());
+    S_.resize(model_.families.size());
+    for (std::size_t f = 0; f < S_.size(); ++f) {
+      model_.families[f]->values(Side::deformed, rest_x_, S_[f]);
+    }
+    force_.resize(rest_x_.size());
+    for (Eigen::Index i = 0; i < model_.mass.size(); ++i) {
+      for (int k = 0; k < d; ++k) force_[d * i + k] = model_.mass[i] * gravity[k];
+    }
+  }
+
+  PoseSolution solve() {
+    const double diagonal = (rest_.V.colwise().maxCoeff() - rest_.V.colwise().minCoeff()).norm();
+    double most = 1;
+    for (const Grip& grip : grips_) most = std::max(most, grip.increments(diagonal));
+    const StaticProblem problem = {model_.families, pattern_, S_, force_, held_};
+    const double tolerance = kTolerance * unit_of_force();
+    const double largest = 1 / std::ceil(most);
+
+    PoseSolution solution;
+    Eigen::VectorXd x = rest_x_, before = x;
+    double t = 0, last = 0;  // share of the way, and the last increment
+    double increment = largest;
+    int halvings = 0;
+    while (t < 1) {
+      const double next = t + 1.5 * increment >= 1 ? 1 : t + increment;
+      // The free vertices go on as in the last increment.
+      Eigen::VectorXd start = last > 0 ? Eigen::VectorXd(x + (next - t) / last * (x - before)) : x;
+      for (const Grip& grip : grips_) grip.place(rest_.V, next, start);
+      StaticSolution trial = solve_static(problem, std::move(start), tolerance);
+      solution.iterations += trial.iterations;
+      const double smallest = smallest_element(trial.x);
+      if (!trial.converged || !(smallest >= kSmallestElement)) {
+        if (halvings == kMaxHalvings) fail(t, next, trial, smallest, tolerance);
+        ++halvings;
+        increment = (next - t) / 2;
+        continue;
+      }
+      before = std::move(x);
+      x = std::move(trial.x);
+      last = next - t;
+      t = next;
+      ++solution.increments;
+      solution.energy = trial.energy;
+      solution.residual = trial.residual;
+      solution.smallest_element = smallest;
+      halvings = std::max(0, halvings - 1);
+      increment = std::min(largest, 2 * increment);
+    }
+    solution.V = Eigen::Map<const RowMatrixXd>(x.data(), rest_.V.rows(), rest_.V.cols());
+    for (const Grip& grip : grips_) solution.held.push_back(static_cast<int>(grip.vertices().size()));
+    return solution;
+  }
+
+ private:
+  double unit_of_force() const {
+    Eigen::VectorXd s, g, force = Eigen::VectorXd::Zero(rest_x_.size());
+    for (std::size_t f = 0; f < S_.size(); ++f) {
+      const MeasureFamily& family = *model_.families[f];
+      family.gradients(Side::deformed, (1 + kSwelling) * rest_x_, s, g);
+      family.scatter(Side::deformed, g, family.law().stress({family.coefficients(), s, S_[f]}), force);
+    }
+    return force.lpNorm<Eigen::Infinity>();
+  }
+
+  // Smallest area or volume over that at rest; 1 for bodies without.
+  double smallest_element(const Eigen::VectorXd& x) const {
+    double smallest = 1;
+    for (std::size_t f = 0; f < S_.size(); ++f) {
+      if (model_.families[f]->kind() != MeasureKind::size) continue;
+      Eigen::VectorXd s;
+      model_.families[f]->values(Side::deformed, x, s);
+      smallest = std::min(smallest, s.cwiseQuotient(S_[f]).minCoeff());
+    }
+    return smallest;
+  }
+
+  [[noreturn]] static void fail(double t, double next, const StaticSolution& trial, double smallest,
+                                double tolerance) {
+    const std::string way =
+        "the handles came " + number_text(std::round(1000 * t) / 10) + " % of their way; ";
+    if (!trial.converged) {
+      throw Error(ErrorKind::numerical,
+                  way + "at " + number_text(std::round(1000 * next) / 10) +
+                      " % no equilibrium was found (a force of " + number_text(trial.residual) +
+                      " N was left, " + number_text(tolerance) + " N is allowed)",
+                  "move the handles less, or let them hold other parts of the body");
+    }
+    throw Error(ErrorKind::numerical,
+                way + "then an element is squeezed to " + number_text(smallest) + " of its size",
+                "move the handles less, let them hold less of the body, or raise model.volume_stiffness");
+  }
+
+  const SimMesh& rest_;
+  ElasticModel model_;
+  SymmetricPattern pattern_;
+  std::vector<bool> held_;
+  std::vector<Grip> grips_;
+  Eigen::VectorXd rest_x_, force_;
+  std::vector<Eigen::VectorXd> S_;
+};
+
+}  // namespace
+
+PoseSolution solve_pose(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
+                        const Eigen::Vector3d& gravity) {
+  return PoseSolver(rest, model, handles, gravity).solve();
+}
+
+}  // namespace vivify::sim
