@@ -265,26 +265,33 @@ void BlockCholesky::solve_in_place(Eigen::Ref<Eigen::MatrixXd> x) const {
 
 void BlockCholesky::solve_one(double* x) const {
   std::vector<double> scratch(static_cast<std::size_t>(most_rows_));
-  double* y = scratch.data();
+  double* y = scratch.data();  // the rows of a panel
   for (const Panel& panel : panels_) {
     const int* rows = rows_.data() + panel.row_begin;
+    const long stride = panel.stride;
     std::copy_n(x + panel.first, panel.width, y);
-    std::fill(y + panel.width, y + panel.stride, 0.0);
+    std::fill(y + panel.width, y + stride, 0.0);
     for (int begin = 0; begin < panel.width; begin += kPanelColumns) {
       with_constant<kPanelColumns>(std::min(kPanelColumns, panel.width - begin), [&](auto constant) {
         constexpr int kColumns = constant();
-        const double* columns = values_.data() + panel.value_begin + long(begin) * panel.stride;
+        const double* columns = values_.data() + panel.value_begin + begin * stride;
+        double top[kPanelColumns];
         Vector4 factors[kColumns];
+#pragma GCC unroll 4
+        for (int i = 0; i < kPanelColumns; ++i) top[i] = y[begin + i];
+#pragma GCC unroll 4
         for (int j = 0; j < kColumns; ++j) {
-          for (int row = j + 1; row < kPanelColumns; ++row) {
-            y[begin + row] -= y[begin + j] * columns[begin + row + j * panel.stride];
-          }
-          factors[j] = _mm256_broadcast_sd(y + begin + j);
+#pragma GCC unroll 4
+          for (int i = j + 1; i < kPanelColumns; ++i) top[i] -= top[j] * columns[begin + i + j * stride];
+          factors[j] = _mm256_set1_pd(top[j]);
         }
-        for (int row = begin + kPanelColumns; row < panel.stride; row += kLanes) {
+#pragma GCC unroll 4
+        for (int i = 0; i < kPanelColumns; ++i) y[begin + i] = top[i];
+        for (int row = begin + kPanelColumns; row < stride; row += kLanes) {
           Vector4 value = _mm256_loadu_pd(y + row);
+#pragma GCC unroll 4
           for (int j = 0; j < kColumns; ++j) {
-            value = _mm256_fnmadd_pd(_mm256_loadu_pd(columns + row + j * panel.stride), factors[j], value);
+            value = _mm256_fnmadd_pd(_mm256_loadu_pd(columns + row + j * stride), factors[j], value);
           }
           _mm256_storeu_pd(y + row, value);
         }
@@ -295,28 +302,35 @@ void BlockCholesky::solve_one(double* x) const {
   }
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
     const int* rows = rows_.data() + panel->row_begin;
+    const long stride = panel->stride;
     for (int i = 0; i < panel->width; ++i) y[i] = x[panel->first + i] * inverse_pivots_[panel->first + i];
     for (int row = 0; row < panel->below(); ++row) y[panel->width + row] = x[rows[row]];
-    std::fill(y + panel->height, y + panel->stride, 0.0);
+    std::fill(y + panel->height, y + stride, 0.0);
     for (int begin = (panel->width - 1) / kPanelColumns * kPanelColumns; begin >= 0; begin -= kPanelColumns) {
       with_constant<kPanelColumns>(std::min(kPanelColumns, panel->width - begin), [&](auto constant) {
         constexpr int kColumns = constant();
-        const double* columns = values_.data() + panel->value_begin + long(begin) * panel->stride;
+        const double* columns = values_.data() + panel->value_begin + begin * stride;
         Vector4 sums[kColumns];
+#pragma GCC unroll 4
         for (int j = 0; j < kColumns; ++j) sums[j] = _mm256_setzero_pd();
-        for (int row = begin + kPanelColumns; row < panel->stride; row += kLanes) {
+        for (int row = begin + kPanelColumns; row < stride; row += kLanes) {
           const Vector4 value = _mm256_loadu_pd(y + row);
+#pragma GCC unroll 4
           for (int j = 0; j < kColumns; ++j) {
-            sums[j] = _mm256_fmadd_pd(_mm256_loadu_pd(columns + row + j * panel->stride), value, sums[j]);
+            sums[j] = _mm256_fmadd_pd(_mm256_loadu_pd(columns + row + j * stride), value, sums[j]);
           }
         }
+        double top[kPanelColumns];
+#pragma GCC unroll 4
+        for (int i = 0; i < kPanelColumns; ++i) top[i] = y[begin + i];
+#pragma GCC unroll 4
         for (int j = kColumns - 1; j >= 0; --j) {
-          double value = y[begin + j] - sum(sums[j]);
-          for (int row = j + 1; row < kPanelColumns; ++row) {
-            value -= y[begin + row] * columns[begin + row + j * panel->stride];
-          }
-          y[begin + j] = value;
+          top[j] -= sum(sums[j]);
+#pragma GCC unroll 4
+          for (int i = kPanelColumns - 1; i > j; --i) top[j] -= top[i] * columns[begin + i + j * stride];
         }
+#pragma GCC unroll 4
+        for (int j = 0; j < kColumns; ++j) y[begin + j] = top[j];
       });
     }
     std::copy_n(y, panel->width, x + panel->first);
