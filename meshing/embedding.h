@@ -1,16 +1,17 @@
-// Drawn surfaces carried by a simulation mesh: every drawn vertex is a fixed affine combination of the
-// corners of one tetrahedron.
+// Drawn points carried by a simulation mesh: every drawn point is a fixed affine combination of the corners
+// of one element.
 #pragma once
 
+#include "common/matrix.h"
 #include "common/mesh.h"
 
 namespace vivify::meshing {
 
 struct Embedding {
-  Eigen::VectorXi tet;                                                // #P, tetrahedron of each point
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;  // #P by 4, barycentric, rows sum to 1
+  Eigen::VectorXi element;  // #P, triangle or tetrahedron of each point
+  RowMatrixXd weights;      // #P by 3 (triangles) or 4 (tetrahedra), barycentric, rows sum to 1
 
-  // Largest |weight|. Above 2 a point lies far outside its tetrahedron and exaggerates its motion: worth a
+  // Largest |weight|. Above 2 a point lies far outside its element and exaggerates its motion: worth a
   // warning.
   double largest_weight() const { return weights.size() == 0 ? 0 : weights.cwiseAbs().maxCoeff(); }
 };
@@ -22,7 +23,11 @@ struct Embedding {
 // point is not finite.
 Embedding embed(const TetMesh& mesh, const Points& points);
 
-// Positions of the embedded points (#P by 3) for vertex positions x (#V by 3).
-Points interpolate(const Embedding& embedding, const Tetrahedra& T, const Points& x);
+// The same in the plane, for triangles F (counter-clockwise) of the vertices V.
+Embedding embed(const Points2& V, const Triangles& F, const Points2& points);
+
+// Positions of the embedded points (#P by d) for vertex positions x (#V by d) of the elements E.
+RowMatrixXd interpolate(const Embedding& embedding, const Eigen::Ref<const RowMatrixXi>& E,
+                        const Eigen::Ref<const RowMatrixXd>& x);
 
 }  // namespace vivify::meshing

@@ -159,67 +159,11 @@ Eigen::MatrixXd at_points(const Eigen::MatrixXd& solution, const TetMesh& mesh, 
     }
   }
   if (others.empty()) return weights;
-  const Embedding embedding = embed(mesh, points(others, Eigen::all));
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    weights.row(others[i]).setZero();
-    const Eigen::Index row = static_cast<Eigen::Index>(i);
-    for (int k = 0; k < 4; ++k) {
-      weights.row(others[i]) += embedding.weights(row, k) * solution.row(mesh.T(embedding.tet[row], k));
-    }
-  }
+  weights(others, Eigen::all) = interpolate(embed(mesh, points(others, Eigen::all)), mesh.T, solution);
   return weights;
 }
 
 }  // namespace
-
-Eigen::VectorXd project_weights(const Eigen::VectorXd& weights, const Points& C, const Eigen::Vector3d& x) {
-  // The minimiser is w = max(0, w0 + A^T y) with A w = b; the multipliers y maximise a concave, piecewise
-  // quadratic function of four variables, which a damped Newton method does in finitely many steps.
-  const double size = bounding_box(C).diagonal();
-  Eigen::Matrix<double, 4, Eigen::Dynamic> A(4, C.rows());
-  A.row(0).setOnes();
-  A.bottomRows<3>() = (C.transpose().colwise() - x) / size;
-  const Eigen::Vector4d b(1, 0, 0, 0);
-  const auto primal = [&](const Eigen::Vector4d& y) {
-    return (weights + A.transpose() * y).cwiseMax(0).eval();
-  };
-  const auto dual = [&](const Eigen::Vector4d& y) { return y.dot(b) - 0.5 * primal(y).squaredNorm(); };
-
-  Eigen::Vector4d y = Eigen::Vector4d::Zero();
-  Eigen::VectorXd w = primal(y);
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const Eigen::Vector4d residual = b - A * w;
-    if (residual.norm() < 1e-15) break;
-    Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
-    for (Eigen::Index c = 0; c < C.rows(); ++c) {
-      if (w[c] > 0) H += A.col(c) * A.col(c).transpose();
-    }
-    H.diagonal().array() += 1e-14 * std::max(1.0, H.trace());  // free columns may not span all four rows
-    const Eigen::Vector4d step = H.ldlt().solve(residual);
-    double length = 1;
-    const double start = dual(y), slope = residual.dot(step);
-    while (length > 1e-10 && dual(y + length * step) < start + 1e-4 * length * slope - 1e-16) length /= 2;
-    y += length * step;
-    w = primal(y);
-  }
-  // A last correction within the free columns takes out round-off.
-  for (int pass = 0; pass < 2; ++pass) {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index c = 0; c < C.rows(); ++c) {
-      if (w[c] > 0) free.push_back(c);
-    }
-    const Eigen::MatrixXd columns = A(Eigen::all, free);
-    const Eigen::VectorXd change = columns.completeOrthogonalDecomposition().solve(b - A * w);
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      w[free[i]] = std::max(0.0, w[free[i]] + change[static_cast<Eigen::Index>(i)]);
-    }
-  }
-  if (!((b - A * w).norm() < 1e-11)) {
-    throw Error(ErrorKind::numerical, "a point has no weights >= 0 in its cage",
-                "it lies outside the convex hull of the cage");
-  }
-  return w.cwiseMin(1);
-}
 
 Eigen::MatrixXd harmonic_coordinates(const TriangleMesh& cage, const Points& points,
                                      const HarmonicSettings& settings, HarmonicReport* report) {
@@ -234,23 +178,8 @@ Eigen::MatrixXd harmonic_coordinates(const TriangleMesh& cage, const Points& poi
 
   HarmonicReport result;
   result.unknowns = laplace.unknowns();
-  result.tetrahedra = tets.mesh.T.rows();
-  result.most_negative = points.rows() == 0 ? 0 : std::min(0.0, weights.minCoeff());
-  for (Eigen::Index p = 0; p < points.rows(); ++p) {
-    if (weights.row(p).minCoeff() < 0 || weights.row(p).maxCoeff() > 1) {
-      weights.row(p) = project_weights(weights.row(p), cage.V, points.row(p));
-      ++result.projected;
-    }
-    result.sum_error = std::max(result.sum_error, std::abs(weights.row(p).sum() - 1));
-    result.position_error =
-        std::max(result.position_error, (weights.row(p) * cage.V - points.row(p)).norm() / diagonal);
-  }
-  if (result.sum_error > 1e-10 || result.position_error > 1e-10) {
-    throw Error(ErrorKind::numerical,
-                "the harmonic coordinates do not reproduce the points: error " +
-                    number_text(std::max(result.sum_error, result.position_error)),
-                "the cage has faces or features that are too thin");
-  }
+  result.elements = tets.mesh.T.rows();
+  make_exact(weights, cage.V, points, result);
   if (report) *report = result;
   return weights;
 }

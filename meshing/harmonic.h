@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "common/mesh.h"
+#include "meshing/cage_weights.h"
 
 namespace vivify::meshing {
 
@@ -17,15 +18,6 @@ struct HarmonicSettings {
   bool both_diagonals = true;
 };
 
-struct HarmonicReport {
-  Eigen::Index unknowns = 0;  // of the Laplace problem that was solved
-  Eigen::Index tetrahedra = 0;
-  double most_negative = 0;    // smallest weight before the projection
-  Eigen::Index projected = 0;  // points whose weights were projected
-  double sum_error = 0;        // largest |sum of weights - 1| afterwards
-  double position_error = 0;   // largest |C^T w - x| afterwards, over the cage's diagonal
-};
-
 // Weights (#points by #cage vertices), each in [0, 1], rows sum to 1 and reproduce the points: weights *
 // cage.V = points (both to 1e-10). The Laplace equation is solved on a tetrahedral mesh of the cage whose
 // nodes include the points, with a refined boundary and piecewise-linear values on the cage faces. The
@@ -34,9 +26,5 @@ struct HarmonicReport {
 // are not strictly inside it.
 Eigen::MatrixXd harmonic_coordinates(const TriangleMesh& cage, const Points& points,
                                      const HarmonicSettings& settings = {}, HarmonicReport* report = nullptr);
-
-// The weights nearest to `weights` (least squares) with w >= 0, sum w = 1 and C^T w = x for the cage
-// vertices C (#C by 3). Throws Error(numerical) when x lies outside the convex hull of C.
-Eigen::VectorXd project_weights(const Eigen::VectorXd& weights, const Points& C, const Eigen::Vector3d& x);
 
 }  // namespace vivify::meshing

@@ -10,13 +10,20 @@
 namespace vivify::meshing {
 namespace {
 
-// Gradients of the four hat functions of a tetrahedron, as rows.
-Eigen::Matrix<double, 4, 3> hat_gradients(const TetMesh& mesh, Eigen::Index t) {
-  Eigen::Matrix3d edges;  // rows
-  for (int k = 1; k < 4; ++k) edges.row(k - 1) = mesh.V.row(mesh.T(t, k)) - mesh.V.row(mesh.T(t, 0));
-  Eigen::Matrix<double, 4, 3> gradients;
-  gradients.bottomRows<3>() = edges.inverse().transpose();
-  gradients.row(0) = -gradients.bottomRows<3>().colwise().sum();
+template <int kDim>
+using Vertices = Eigen::Matrix<double, Eigen::Dynamic, kDim, Eigen::RowMajor>;
+template <int kDim>
+using Elements = Eigen::Matrix<int, Eigen::Dynamic, kDim + 1, Eigen::RowMajor>;
+
+// Gradients of the hat functions of a simplex, as rows.
+template <int kDim>
+Eigen::Matrix<double, kDim + 1, kDim> hat_gradients(const Vertices<kDim>& V, const Elements<kDim>& E,
+                                                    Eigen::Index t) {
+  Eigen::Matrix<double, kDim, kDim> edges;  // rows
+  for (int k = 1; k <= kDim; ++k) edges.row(k - 1) = V.row(E(t, k)) - V.row(E(t, 0));
+  Eigen::Matrix<double, kDim + 1, kDim> gradients;
+  gradients.template bottomRows<kDim>() = edges.inverse().transpose();
+  gradients.row(0) = -gradients.template bottomRows<kDim>().colwise().sum();
   return gradients;
 }
 
@@ -24,11 +31,22 @@ Eigen::Matrix<double, 4, 3> hat_gradients(const TetMesh& mesh, Eigen::Index t) {
 
 LaplaceProblem::LaplaceProblem(const TetMesh& mesh, const Eigen::VectorXi& prescribed)
     : vertices_(mesh.V.rows()), prescribed_(prescribed) {
+  assemble<3>(mesh.V, mesh.T, tet_volumes(mesh));
+}
+
+LaplaceProblem::LaplaceProblem(const Points2& V, const Triangles& F, const Eigen::VectorXi& prescribed)
+    : vertices_(V.rows()), prescribed_(prescribed) {
+  assemble<2>(V, F, element_sizes({V, F}));
+}
+
+template <int kDim>
+void LaplaceProblem::assemble(const Vertices<kDim>& V, const Elements<kDim>& E,
+                              const Eigen::VectorXd& sizes) {
   // Role of a vertex: an unknown (>= 0), prescribed number i (-2 - i), or unused (-1).
   constexpr int kUnused = -1;
   Eigen::VectorXi role = Eigen::VectorXi::Constant(vertices_, kUnused);
-  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-    for (int k = 0; k < 4; ++k) role[mesh.T(t, k)] = 0;
+  for (Eigen::Index t = 0; t < E.rows(); ++t) {
+    for (int k = 0; k <= kDim; ++k) role[E(t, k)] = 0;
   }
   for (int i = 0; i < prescribed_.size(); ++i) role[prescribed_[i]] = -2 - i;
   std::vector<int> unknowns;
@@ -39,17 +57,16 @@ LaplaceProblem::LaplaceProblem(const TetMesh& mesh, const Eigen::VectorXi& presc
   }
   free_ = Eigen::Map<const Eigen::VectorXi>(unknowns.data(), static_cast<Eigen::Index>(unknowns.size()));
 
-  const Eigen::VectorXd volumes = tet_volumes(mesh);
   std::vector<Eigen::Triplet<double>> inner, coupling;
-  inner.reserve(static_cast<std::size_t>(10 * mesh.T.rows()));
-  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-    const Eigen::Matrix<double, 4, 3> g = hat_gradients(mesh, t);
-    for (int i = 0; i < 4; ++i) {
-      const int row = role[mesh.T(t, i)];
+  inner.reserve(static_cast<std::size_t>(10 * E.rows()));
+  for (Eigen::Index t = 0; t < E.rows(); ++t) {
+    const Eigen::Matrix<double, kDim + 1, kDim> g = hat_gradients<kDim>(V, E, t);
+    for (int i = 0; i <= kDim; ++i) {
+      const int row = role[E(t, i)];
       if (row < 0) continue;
-      for (int j = 0; j < 4; ++j) {
-        const int column = role[mesh.T(t, j)];
-        const double entry = volumes[t] * g.row(i).dot(g.row(j));
+      for (int j = 0; j <= kDim; ++j) {
+        const int column = role[E(t, j)];
+        const double entry = sizes[t] * g.row(i).dot(g.row(j));
         if (column >= row) inner.emplace_back(column, row, entry);  // lower triangle
         if (column < kUnused) coupling.emplace_back(row, -2 - column, entry);
       }
@@ -62,8 +79,8 @@ LaplaceProblem::LaplaceProblem(const TetMesh& mesh, const Eigen::VectorXi& presc
   stiffness.setFromTriplets(inner.begin(), inner.end());
   factor_.compute(stiffness);
   if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0)) {
-    throw Error(ErrorKind::numerical, "the Laplace matrix of a tetrahedral mesh is not positive definite",
-                "the mesh has flat tetrahedra or a part without prescribed values");
+    throw Error(ErrorKind::numerical, "the Laplace matrix of a mesh is not positive definite",
+                "the mesh has flat elements or a part without prescribed values");
   }
 }
 

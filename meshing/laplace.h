@@ -1,4 +1,5 @@
-// The Laplace equation on a tetrahedral mesh with prescribed values on its boundary.
+// The Laplace equation on a triangle mesh in the plane or a tetrahedral mesh, with prescribed values on its
+// boundary.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -13,15 +14,21 @@ namespace vivify::meshing {
 class LaplaceProblem {
  public:
   // `prescribed` (distinct vertices, at least one in each component) have given values; all other vertices
-  // that a tetrahedron uses are unknowns. Throws Error(numerical) when the matrix is not positive definite.
+  // that an element uses are unknowns. Throws Error(numerical) when the matrix is not positive definite.
   LaplaceProblem(const TetMesh& mesh, const Eigen::VectorXi& prescribed);
+  LaplaceProblem(const Points2& V, const Triangles& F, const Eigen::VectorXi& prescribed);
 
-  // values: #prescribed by k. Returns #V by k; rows of vertices that no tetrahedron uses are zero.
+  // values: #prescribed by k. Returns #V by k; rows of vertices that no element uses are zero.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& values) const;
 
   Eigen::Index unknowns() const { return free_.size(); }
 
  private:
+  template <int kDim>
+  void assemble(const Eigen::Matrix<double, Eigen::Dynamic, kDim, Eigen::RowMajor>& V,
+                const Eigen::Matrix<int, Eigen::Dynamic, kDim + 1, Eigen::RowMajor>& E,
+                const Eigen::VectorXd& sizes);
+
   Eigen::Index vertices_;
   Eigen::VectorXi prescribed_;
   Eigen::VectorXi free_;                  // vertices that are unknowns

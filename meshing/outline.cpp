@@ -84,6 +84,15 @@ Outline glyph_outline(const Value& value, const std::filesystem::path& font) {
 
 }  // namespace
 
+Points2 polyline_points(const Value& value) {
+  const std::vector<Value>& items = value["points"].items();
+  Points2 points(std::ssize(items), 2);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    points.row(static_cast<Eigen::Index>(i)) = items[i].as_vector().transpose();
+  }
+  return points;
+}
+
 double Outline::area() const {
   double sum = 0;
   for (const Points2& loop : loops) sum += signed_area(loop);
@@ -133,12 +142,19 @@ Schema outline_schema() {
                      "at x = 0.")
                   .field("font", path("A TrueType or OpenType font.").required())
                   .field("text", string("One or more characters, set on one line.").required())
-                  .field("height", number("Height of the whole outline.").unit("m").above(0).initially(1)));
+                  .field("height", number("Height of the whole outline.").unit("m").above(0).initially(1)))
+      .option("polyline", object("An open line, for rods: it has no inside.")
+                              .field("points", list("Its points in order.", vector("A point, x and y.", 2).unit("m"))
+                                                   .items_at_least(2)
+                                                   .required()));
 }
 
 Outline make_outline(const Value& value,
                      const std::function<std::filesystem::path(const std::string&)>& resolve_path) {
   const std::string& type = value["type"].as_string();
+  if (type == "polyline") {
+    throw Error(ErrorKind::usage, "a polyline has no inside", "give a polygon", value.where());
+  }
   if (type == "polygon") return polygon_outline(value);
   if (type == "svg") return svg_outline(value, resolve_path(value["file"].as_string()));
   return glyph_outline(value, resolve_path(value["font"].as_string()));

@@ -26,8 +26,8 @@ struct Outline {
 // not finite or fill no area; `name` names the contours in it.
 Outline clean_outline(const std::vector<Points2>& contours, FillRule rule, const std::string& name);
 
-// What an outline is made from: `type` polygon (filled even-odd), svg (by the fill rule of the drawing) or
-// glyph (nonzero winding).
+// What an outline is made from: `type` polygon (filled even-odd), svg (by the fill rule of the drawing),
+// glyph (nonzero winding) or polyline (open, for rods).
 Schema outline_schema();
 
 // Makes the outline of a value of outline_schema(). Polygons keep their coordinates; drawings and letters are
@@ -35,5 +35,8 @@ Schema outline_schema();
 // 1/2000 of their size. Throws Error(geometry) or Error(usage).
 Outline make_outline(const Value& value,
                      const std::function<std::filesystem::path(const std::string&)>& resolve_path);
+
+// The points of an open polyline.
+Points2 polyline_points(const Value& value);
 
 }  // namespace vivify::meshing

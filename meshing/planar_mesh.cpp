@@ -55,21 +55,7 @@ std::vector<Points2> coarsened(const Outline& outline, double size) {
 
 std::optional<PlaneTriangles> attempt(const Outline& outline, double size, double shape_bound,
                                       Eigen::Index most) {
-  const std::vector<Points2> loops = coarsened(outline, size);
-  Eigen::Index count = 0;
-  for (const Points2& loop : loops) count += loop.rows();
-  if (count > most) return std::nullopt;
-  Points2 points(count, 2);
-  Edges segments(count, 2);
-  Eigen::Index first = 0;
-  for (const Points2& loop : loops) {
-    points.middleRows(first, loop.rows()) = loop;
-    for (Eigen::Index i = 0; i < loop.rows(); ++i) {
-      segments.row(first + i) << static_cast<int>(first + i), static_cast<int>(first + (i + 1) % loop.rows());
-    }
-    first += loop.rows();
-  }
-  return refine_plane(points, segments,
+  return refine_plane(coarsened(outline, size),
                       {.longest_edge = size, .least_sine_squared = shape_bound, .most_vertices = most});
 }
 

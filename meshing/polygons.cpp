@@ -176,6 +176,17 @@ double distance_to(const std::vector<Points2>& loops, const Eigen::Vector2d& p) 
   return nearest;
 }
 
+std::vector<int> points_not_inside(const Points2& polygon, const Points2& points, double clearance) {
+  const std::vector<Points2> loops = {polygon};
+  std::vector<int> outside;
+  for (int i = 0; i < points.rows(); ++i) {
+    const Eigen::Vector2d p = points.row(i);
+    const double distance = distance_to(loops, p);
+    if (winding_number(loops, p) != 1 || distance < clearance || distance == 0) outside.push_back(i);
+  }
+  return outside;
+}
+
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d) {
   if (std::max(a.x(), b.x()) < std::min(c.x(), d.x()) || std::max(c.x(), d.x()) < std::min(a.x(), b.x()) ||

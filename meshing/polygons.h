@@ -42,6 +42,10 @@ int winding_number(const std::vector<Points2>& loops, const Eigen::Vector2d& p);
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 double distance_to(const std::vector<Points2>& loops, const Eigen::Vector2d& p);
 
+// Indices of the points that are not inside the simple counter-clockwise polygon, or nearer to it than
+// `clearance` (metres); points on it are not inside.
+std::vector<int> points_not_inside(const Points2& polygon, const Points2& points, double clearance = 0);
+
 // Whether the closed segments ab and cd have a point in common.
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d);

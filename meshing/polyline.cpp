@@ -73,6 +73,19 @@ Points2 spread_evenly(const Points2& points, int count) {
   return result;
 }
 
+std::vector<int> share_pieces(const std::vector<double>& lengths, int total) {
+  std::vector<int> counts(lengths.size(), 1);
+  for (int left = total - static_cast<int>(lengths.size()); left > 0; --left) {
+    std::size_t longest = 0;
+    for (std::size_t s = 1; s < lengths.size(); ++s) {
+      // Of pieces that are equal but for round-off the first.
+      if (lengths[s] / counts[s] > lengths[longest] / counts[longest] * (1 + 1e-9)) longest = s;
+    }
+    ++counts[longest];
+  }
+  return counts;
+}
+
 Points2 simplify(const Points2& points, double tolerance) {
   std::vector<char> kept(static_cast<std::size_t>(points.rows()), 0);
   kept.front() = kept.back() = 1;

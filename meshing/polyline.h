@@ -20,6 +20,10 @@ double arc_length(const Points2& points);  // of an open polyline, metres
 // `count` + 1 points at equal arc length along an open polyline, with its ends.
 Points2 spread_evenly(const Points2& points, int count);
 
+// How many pieces to cut each section into, at least one, `total` in all: the section with the longest pieces
+// gets the next one.
+std::vector<int> share_pieces(const std::vector<double>& lengths, int total);
+
 // Vertices of an open polyline, its ends among them, such that the others lie within `tolerance` of the
 // polyline through them (Ramer 1972, Douglas and Peucker 1973).
 Points2 simplify(const Points2& points, double tolerance);

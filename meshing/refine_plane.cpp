@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -104,6 +105,36 @@ std::optional<PlaneTriangles> refine_plane(const Points2& points, const Edges& s
     result.F.row(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
   }
   return result;
+}
+
+std::optional<PlaneTriangles> refine_plane(const std::vector<Points2>& loops,
+                                           const RefineSettings& settings) {
+  Eigen::Index count = 0;
+  for (const Points2& loop : loops) count += loop.rows();
+  if (count > settings.most_vertices) return std::nullopt;
+  Points2 points(count, 2);
+  Edges segments(count, 2);
+  Eigen::Index first = 0;
+  for (const Points2& loop : loops) {
+    points.middleRows(first, loop.rows()) = loop;
+    for (Eigen::Index i = 0; i < loop.rows(); ++i) {
+      segments.row(first + i) << static_cast<int>(first + i), static_cast<int>(first + (i + 1) % loop.rows());
+    }
+    first += loop.rows();
+  }
+  return refine_plane(points, segments, settings);
+}
+
+std::map<int, int> next_on_boundary(const Triangles& F) {
+  std::set<std::pair<int, int>> edges;
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) edges.emplace(F(f, k), F(f, (k + 1) % 3));
+  }
+  std::map<int, int> next;
+  for (const auto& [a, b] : edges) {
+    if (!edges.contains({b, a})) next[a] = b;
+  }
+  return next;
 }
 
 }  // namespace vivify::meshing

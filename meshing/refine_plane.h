@@ -2,7 +2,9 @@
 // 2002).
 #pragma once
 
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "common/mesh.h"
 
@@ -28,5 +30,12 @@ struct PlaneTriangles {
 // nothing.
 std::optional<PlaneTriangles> refine_plane(const Points2& points, const Edges& segments,
                                            const RefineSettings& settings);
+
+// The same for closed loops, whose vertices are the points in order.
+std::optional<PlaneTriangles> refine_plane(const std::vector<Points2>& loops, const RefineSettings& settings);
+
+// The vertex that follows each boundary vertex along the boundary, with the triangles on its left. Where the
+// boundary touches itself, one of them.
+std::map<int, int> next_on_boundary(const Triangles& F);
 
 }  // namespace vivify::meshing

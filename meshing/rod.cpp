@@ -19,19 +19,6 @@ Points2 without_repeats(const Points2& points, bool closed) {
   return kept.topRows(count);
 }
 
-// Edges for each section, at least one: the section with the longest edges gets the next one.
-std::vector<int> share_edges(const std::vector<double>& lengths, int edges) {
-  std::vector<int> counts(lengths.size(), 1);
-  for (int left = edges - static_cast<int>(lengths.size()); left > 0; --left) {
-    std::size_t longest = 0;
-    for (std::size_t s = 1; s < lengths.size(); ++s) {
-      if (lengths[s] / counts[s] > lengths[longest] / counts[longest]) longest = s;
-    }
-    ++counts[longest];
-  }
-  return counts;
-}
-
 }  // namespace
 
 Rod rod_from_polyline(const Points2& polyline, bool closed, int vertices) {
@@ -60,7 +47,7 @@ Rod rod_from_polyline(const Points2& polyline, bool closed, int vertices) {
     sections.push_back(section(points, corners[c], corners[(c + 1) % corners.size()]));
     lengths.push_back(arc_length(sections.back()));
   }
-  const std::vector<int> edges = share_edges(lengths, closed ? vertices : vertices - 1);
+  const std::vector<int> edges = share_pieces(lengths, closed ? vertices : vertices - 1);
   Rod rod;
   rod.V.resize(vertices, 2);
   Eigen::Index row = 0;

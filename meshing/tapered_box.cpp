@@ -1,6 +1,7 @@
 #include "meshing/tapered_box.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -92,6 +93,20 @@ TriangleMesh tapered_box(const Points& points, double clearance) {
   box.F << 0, 4, 6, 0, 6, 2, 1, 3, 5, 3, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 3, 3, 6, 7, 0, 2, 3, 0, 3, 1, 4, 5, 6,
       5, 7, 6;
   return box;
+}
+
+Points2 tapered_rectangle(const Points2& points, double clearance) {
+  const double low = points.col(1).minCoeff() - clearance;
+  const double height = points.col(1).maxCoeff() + clearance - low;
+  const Eigen::VectorXd t = (points.col(1).array() - low) / height;
+  const std::vector<Slab> across = slabs(t, points.col(0), height, clearance);
+  const Slab best = *std::min_element(across.begin(), across.end(), [](const Slab& a, const Slab& b) {
+    return a.half + a.slope / 2 < b.half + b.slope / 2;  // mean width
+  });
+  Points2 corners(4, 2);
+  corners << best.centre - best.half, low, best.centre + best.half, low, best.centre + best.half + best.slope,
+      low + height, best.centre - best.half - best.slope, low + height;
+  return corners;
 }
 
 }  // namespace vivify::meshing

@@ -1,4 +1,4 @@
-// Cages of eight vertices.
+// Cages of eight vertices in space and four in the plane.
 #pragma once
 
 #include "common/mesh.h"
@@ -12,5 +12,8 @@ namespace vivify::meshing {
 // join the four vertices with an even number of ones, which leaves half-turns about all three axes as
 // symmetries.
 TriangleMesh tapered_box(const Points& points, double clearance);
+
+// The upright trapezium of least area around the points, of the same kind: counter-clockwise from below left.
+Points2 tapered_rectangle(const Points2& points, double clearance);
 
 }  // namespace vivify::meshing
