@@ -11,6 +11,7 @@
 #include "sim/contact/contact_points.h"
 #include "sim/control/rigid_motion.h"
 #include "sim/settings.h"
+#include "sim/solve/static_solve.h"
 
 namespace vivify::sim {
 namespace {
@@ -20,7 +21,9 @@ constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plan
 constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of force even where there is none
 constexpr double kLeastHeight = 0.2;     // of the diagonal: the unit of length of bodies that lie flat
 constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
-constexpr int kMaxStepSplits = 4;        // a step that cannot be solved is cut in halves so many times
+constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
+constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
+constexpr int kMaxStepSplits = 4;          // a step that cannot be solved is cut in halves so many times
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
   return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d);
@@ -107,6 +110,23 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   contact_memory_.resize(static_cast<std::size_t>(model_.contact_points.size()));
   const ControlledBody controlled{model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h};
   controller_ = make_controller(controlled, input.controller);
+  const auto keyed = controller_->rest_parameters(0);
+  if (keyed && keyed->size() != model_.rest->parameters()) {
+    throw Error(ErrorKind::usage,
+                "body '" + model_.name + "': the controller gives " + std::to_string(keyed->size()) +
+                    " weights and the rest space has " + std::to_string(model_.rest->parameters()),
+                "give one weight per example", input.controller.where());
+  }
+  if (!keyed || !settings.statics) return;
+  const Eigen::VectorXd q = model_.rest->basis().transpose() * *keyed;
+  StepRecord record;
+  for (int part = 1; part <= kStaticStart; ++part) {
+    if (settle(static_cast<double>(part) / kStaticStart * q, record)) continue;
+    throw Error(
+        ErrorKind::numerical,
+        "body '" + model_.name + "': no equilibrium was found for the rest shape of its first keyframe",
+        "begin with weights nearer to 0");
+  }
 }
 
 StepSolution Body::solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record) {
@@ -145,8 +165,40 @@ StepSolution Body::solve(const StepProblem& problem, const Eigen::VectorXd& star
   return best;
 }
 
-bool Body::advance(double h, const std::vector<Goal>& goals, const std::vector<Collider>& colliders,
-                   StepRecord& record) {
+bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
+  std::vector<Eigen::VectorXd> S;
+  model_.rest->measures(model_.elastic, q, S, nullptr);
+  const Eigen::Index n = model_.mass.size();
+  const StaticProblem problem = {model_.elastic, *model_.pattern, S, Eigen::VectorXd::Zero(x_.size()),
+                                 std::vector<bool>(static_cast<std::size_t>(n), false)};
+  StaticSolution solution = solve_static(problem, x_, kStaticTolerance * model_.weight);
+  record.method = "static";
+  record.iterations += solution.iterations;
+  record.residual_rel = std::max(record.residual_rel, solution.residual / model_.weight);
+  if (!solution.converged) return false;
+
+  const int d = model_.dimension();
+  const Eigen::Matrix3d R = best_rotation(model_.mass, solution.x, x_);
+  const Eigen::Vector3d from = centre_of_mass(model_.mass, solution.x), to = centre_of_mass(model_.mass, x_);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d y = to + R * (spatial_point(solution.x, i, d) - from);
+    for (int k = 0; k < d; ++k) x_[d * i + k] = y[k];
+  }
+  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (q - q_)).norm() / settings_.h);
+  q_ = q;
+  const ContactSet no_contacts;
+  const Goals no_goals;
+  const StepProblem at_rest(model_, no_contacts, no_goals, x_, x_, q_, settings_.h);
+  StepSolution state;
+  state.at = at_rest.deformed_point(x_);
+  state.rest = at_rest.rest_point(q_, false);
+  state.objective = state.rest.regularizer;
+  measure(at_rest, state, record);
+  return true;
+}
+
+bool Body::advance(double h, const std::vector<Goal>& goals, const std::optional<Eigen::VectorXd>& keyed,
+                   const std::vector<Collider>& colliders, StepRecord& record) {
   const int d = model_.dimension();
   const Goals wanted = make_goals(goals, x_, h);
   const Eigen::VectorXd start = x_ + h * v_;
@@ -160,7 +212,15 @@ bool Body::advance(double h, const std::vector<Goal>& goals, const std::vector<C
   StepSolution solution;
   for (int pass = 1;; ++pass) {
     const StepProblem problem(model_, contacts, wanted, x_, x_tilde, q_, h);
-    solution = solve(problem, start, record);
+    if (keyed) {
+      record.method = "keyed";
+      solution = {};
+      solution.rest = problem.rest_point(*keyed, false);
+      solution.at = problem.deformed_point(start);
+      finish_exactly(problem, solution, *workspace_);
+    } else {
+      solution = solve(problem, start, record);
+    }
     if (!solution.exact || pass == kMaxContactPasses ||
         contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer))
       break;
@@ -185,6 +245,10 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   double load = 0;
   for (const ContactMemory& memory : contact_memory_) load += memory.normal_force;
   const std::vector<Goal> goals = controller_->goals({x_, v_, load});
+  std::optional<Eigen::VectorXd> target;  // of q
+  if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
+    target = model_.rest->basis().transpose() * *p;
+  }
 
   const State before{x_, v_, q_, contact_memory_};
   StepRecord record;
@@ -194,7 +258,11 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
     record.substeps = 1 << splits;
     solved = true;
     for (int part = 0; part < record.substeps && solved; ++part) {
-      solved = advance(settings_.h / record.substeps, goals, colliders, record);
+      const double share = (part + 1.0) / record.substeps;
+      std::optional<Eigen::VectorXd> keyed;
+      if (target) keyed = (1 - share) * before.q + share * *target;
+      solved = settings_.statics ? settle(keyed.value_or(q_), record)
+                                 : advance(settings_.h / record.substeps, goals, keyed, colliders, record);
     }
     if (solved) break;
     x_ = before.x;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct BodyInput {
 struct WorldSettings {
   Eigen::Vector3d gravity = {0, -9.81, 0};  // m/s²
   double h = 1.0 / 48;                      // s
+  bool statics = false;  // every step is the equilibrium of its rest shape: no motion, gravity or contact
 };
 
 // Throws Error(geometry) or Error(usage) when the input cannot be simulated.
@@ -59,9 +61,13 @@ class Body {
     Eigen::VectorXd x, v, q;
     std::vector<ContactMemory> contacts;
   };
-  // One step of size h towards the goals; false when no exact step was found. Adds to the record.
-  bool advance(double h, const std::vector<Goal>& goals, const std::vector<Collider>& colliders,
-               StepRecord& record);
+  // One step of size h towards the goals, or with the rest parameters `keyed`; false when no exact step was
+  // found. Adds to the record.
+  bool advance(double h, const std::vector<Goal>& goals, const std::optional<Eigen::VectorXd>& keyed,
+               const std::vector<Collider>& colliders, StepRecord& record);
+  // To the equilibrium of the rest shape at q, turned and moved as little as can be; false when none was
+  // found.
+  bool settle(const Eigen::VectorXd& q, StepRecord& record);
   StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record);
   void measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const;
 

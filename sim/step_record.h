@@ -11,7 +11,8 @@ struct StepRecord {
   long step = 0;
   double t = 0;  // s, at the end of the step
   std::string body;
-  std::string method;       // whose solution was kept: sqp, reduced, or hold (rest shape kept)
+  std::string method;       // whose solution was kept: sqp, reduced, hold (rest shape kept), keyed (rest
+                            // shape prescribed) or static
   int iterations = 0;       // of the optimiser, over all methods and contact passes
   int halvings = 0;         // damped or shortened trial steps
   int fallback = 0;         // 0: the chosen method converged; 1: the other was tried too; 2: rest shape held

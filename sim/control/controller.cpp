@@ -3,15 +3,17 @@
 #include <array>
 
 #include "common/registry.h"
+#include "sim/control/controllers/blend.h"
 #include "sim/control/controllers/hop.h"
 #include "sim/control/controllers/rest.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 2> kControllers = {{
+constexpr std::array<ControllerEntry, 3> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
+    {"blend", blend_controller_schema, make_blend_controller},
 }};
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,10 @@ class Controller {
 
   // Goals of the coming step. Advances the controller's clock by one step.
   virtual std::vector<Goal> goals(const Observation& observation) = 0;
+
+  // Parameters p of the rest shape at time t (s) when they are prescribed instead of sought; then the goals
+  // have no effect.
+  virtual std::optional<Eigen::VectorXd> rest_parameters(double) const { return std::nullopt; }
 
   // What the controller is doing, for people: "thrust".
   virtual std::string phase() const = 0;

@@ -1,0 +1,83 @@
+#include "sim/control/controllers/blend.h"
+
+#include <algorithm>
+
+namespace vivify::sim {
+namespace {
+
+struct Key {
+  double t;  // s
+  Eigen::VectorXd weights;
+};
+
+class BlendController final : public Controller {
+ public:
+  BlendController(std::vector<Key> keys, bool smooth) : keys_(std::move(keys)), smooth_(smooth) {}
+
+  std::vector<Goal> goals(const Observation&) override { return {}; }
+
+  std::optional<Eigen::VectorXd> rest_parameters(double t) const override {
+    const auto next =
+        std::upper_bound(keys_.begin(), keys_.end(), t, [](double at, const Key& key) { return at < key.t; });
+    if (next == keys_.begin()) return next->weights;
+    const Key& from = *(next - 1);
+    if (next == keys_.end()) return from.weights;
+    double share = (t - from.t) / (next->t - from.t);
+    if (smooth_) share = share * share * (3 - 2 * share);
+    return (1 - share) * from.weights + share * next->weights;
+  }
+
+  std::string phase() const override { return "blend"; }
+  Eigen::VectorXd state() const override { return {}; }
+  void restore(const Eigen::VectorXd&) override {}
+
+ private:
+  std::vector<Key> keys_;
+  bool smooth_;
+};
+
+[[noreturn]] void fail(const Value& key, const std::string& message) {
+  throw Error(ErrorKind::usage, message, "", key.where());
+}
+
+}  // namespace
+
+Schema blend_controller_schema() {
+  return object(
+             "The rest shape follows keyframes, whatever comes of it. For rest spaces of examples, with a "
+             "weight "
+             "for each.")
+      .field(
+          "keys",
+          list("The keyframes, in the order of time. Before the first and after the last the weights stay.",
+               object("Weights at a time.")
+                   .field("t", number("Time.").unit("s").at_least(0).required())
+                   .field("weights",
+                          list("Weight of each example, in their order: 0 is the shape of the body, 1 "
+                               "the example.",
+                               number("A weight."))
+                              .items_at_least(1)
+                              .required()))
+              .items_at_least(1)
+              .required())
+      .field("between",
+             choice("How the weights go from one keyframe to the next: at a constant rate, or slowly at "
+                    "both ends.",
+                    {"linear", "smooth"})
+                 .initially("linear"));
+}
+
+std::unique_ptr<Controller> make_blend_controller(const ControlledBody&, const Value& settings) {
+  std::vector<Key> keys;
+  for (const Value& item : settings["keys"].items()) {
+    Key key = {item["t"].as_number(), item["weights"].as_vector()};
+    if (!keys.empty() && !(key.t > keys.back().t)) fail(item, "controller.keys must be in the order of time");
+    if (!keys.empty() && key.weights.size() != keys.back().weights.size()) {
+      fail(item, "controller.keys must all have as many weights");
+    }
+    keys.push_back(std::move(key));
+  }
+  return std::make_unique<BlendController>(std::move(keys), settings["between"].as_string() == "smooth");
+}
+
+}  // namespace vivify::sim
