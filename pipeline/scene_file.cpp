@@ -260,6 +260,11 @@ Schema scene_schema() {
       .field("version", integer("Version of the scene format.").at_least(1).at_most(1).required())
       .field("frames", frames_schema())
       .field("gravity", vector("Acceleration of gravity.", 3).unit("m/s²").initially({0, -9.81, 0}))
+      .field("physics",
+             choice("What a step is. `dynamic`: motion with inertia, gravity and contact. `static`: the "
+                    "equilibrium of each body for its rest shape of that time, without any of them.",
+                    {"dynamic", "static"})
+                 .initially("dynamic"))
       .field("materials", dictionary("Looks, by name.", render::material_schema()))
       .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
       .field("colliders", list("Fixed objects that bodies touch.", collider_schema()))

@@ -67,7 +67,8 @@ sim::World make_world(const Job& job) {
                            collider["friction"].as_number());
   }
   return sim::World(bodies, std::move(colliders),
-                    {scene.settings["gravity"].as_vector3(), scene.time_step()});
+                    {scene.settings["gravity"].as_vector3(), scene.time_step(),
+                     scene.settings["physics"].as_string() == "static"});
 }
 
 // Files of an earlier, different simulation would look like frames of this one.
@@ -229,7 +230,8 @@ std::string simulation_key(const Job& job) {
   ContentKey key("sim");
   key.add("fps", scene.fps)
       .add("steps_per_frame", scene.steps_per_frame)
-      .add("gravity", scene.settings["gravity"]);
+      .add("gravity", scene.settings["gravity"])
+      .add("physics", scene.settings["physics"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
     for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver"}) {
