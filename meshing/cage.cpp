@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "common/error.h"
@@ -87,24 +86,6 @@ TriangleMesh guarded_wrap_and_collapse(const TriangleMesh& enclosed, double diag
   reader.get(cage.V);
   reader.get(cage.F);
   return cage;
-}
-
-// Vertices at the very same place become one (a cage file with texture seams has them twice); the order is
-// kept.
-TriangleMesh without_duplicates(const TriangleMesh& mesh) {
-  std::map<std::array<double, 3>, int> seen;
-  std::vector<int> row(static_cast<std::size_t>(mesh.V.rows()));
-  TriangleMesh result;
-  result.V.resize(mesh.V.rows(), 3);
-  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
-    const auto [it, inserted] =
-        seen.emplace(std::array{mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}, static_cast<int>(seen.size()));
-    if (inserted) result.V.row(it->second) = mesh.V.row(v);
-    row[static_cast<std::size_t>(v)] = it->second;
-  }
-  result.V.conservativeResize(static_cast<Eigen::Index>(seen.size()), 3);
-  result.F = mesh.F.unaryExpr([&](int v) { return row[static_cast<std::size_t>(v)]; });
-  return result;
 }
 
 Points join(const Points& a, const Points& b) {

@@ -14,6 +14,11 @@ TriangleMesh collapse_surface(const TriangleMesh& closed_surface, int vertices);
 // `sharp_angle` degrees are kept.
 TriangleMesh remesh_surface(const TriangleMesh& closed_surface, double edge_length, double sharp_angle = 50);
 
+// The same for a surface with or without borders, both finer and coarser. Borders and edges sharper than
+// `sharp_angle` keep their shape but not their vertices; where they turn by more than 30 degrees a vertex
+// stays.
+TriangleMesh remesh_shell(const TriangleMesh& surface, double edge_length, double sharp_angle = 50);
+
 bool intersects_itself(const TriangleMesh& surface);
 
 }  // namespace vivify::meshing

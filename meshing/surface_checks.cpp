@@ -1,6 +1,7 @@
 #include "meshing/surface_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 
@@ -67,6 +68,22 @@ int component_count(const TriangleMesh& mesh) {
   for (Eigen::Index i = 0; i < mesh.F.size(); ++i) used[static_cast<std::size_t>(mesh.F.data()[i])] = 1;
   for (std::size_t v = 0; v < parent.size(); ++v) count += used[v] && parent[v] == static_cast<int>(v);
   return count;
+}
+
+TriangleMesh without_duplicates(const TriangleMesh& mesh) {
+  std::map<std::array<double, 3>, int> seen;
+  std::vector<int> row(static_cast<std::size_t>(mesh.V.rows()));
+  TriangleMesh result;
+  result.V.resize(mesh.V.rows(), 3);
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+    const auto [it, inserted] =
+        seen.emplace(std::array{mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2)}, static_cast<int>(seen.size()));
+    if (inserted) result.V.row(it->second) = mesh.V.row(v);
+    row[static_cast<std::size_t>(v)] = it->second;
+  }
+  result.V.conservativeResize(static_cast<Eigen::Index>(seen.size()), 3);
+  result.F = mesh.F.unaryExpr([&](int v) { return row[static_cast<std::size_t>(v)]; });
+  return result;
 }
 
 }  // namespace vivify::meshing

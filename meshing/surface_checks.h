@@ -20,4 +20,8 @@ int component_count(const TriangleMesh& mesh);
 // manifold.
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh);
 
+// The mesh (V and F) with vertices at the very same place joined, which files split at texture seams; the
+// order is kept.
+TriangleMesh without_duplicates(const TriangleMesh& mesh);
+
 }  // namespace vivify::meshing
