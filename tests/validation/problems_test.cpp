@@ -1,0 +1,25 @@
+// Every validation problem keeps the tolerances of its figures.
+#include <gtest/gtest.h>
+
+#include "bench/validation/problem.h"
+
+namespace vivify::validation {
+namespace {
+
+class Validation : public ::testing::TestWithParam<ProblemEntry> {};
+
+TEST_P(Validation, KeepsItsTolerances) {
+  const Result result = GetParam().run(Effort::quick);
+  EXPECT_FALSE(result.figures.empty());
+  EXPECT_FALSE(result.plots.empty());
+  for (const Figure& figure : result.figures) {
+    EXPECT_TRUE(figure.holds()) << figure.name << ": " << figure.ours << " beside " << figure.reference
+                                << ", error " << figure.error() << " of " << figure.tolerance;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Problems, Validation, ::testing::ValuesIn(problems().begin(), problems().end()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace vivify::validation
