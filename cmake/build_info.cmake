@@ -17,7 +17,7 @@ function(hash_sources result)
   set(${result} ${hash} PARENT_SCOPE)
 endfunction()
 
-hash_sources(meshing common/ meshing/ pipeline/stages/ pipeline/placement)
+hash_sources(meshing common/ meshing/ pipeline/stages/ pipeline/placement pipeline/body_ pipeline/example_ pipeline/pose_file)
 hash_sources(sim common/ sim/ pipeline/stages/ pipeline/placement)
 hash_sources(render common/ render/ pipeline/stages/ pipeline/placement pipeline/camera_path pipeline/video)
 

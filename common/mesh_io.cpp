@@ -23,6 +23,17 @@ const std::vector<std::string> kExtensions = {".obj", ".ply", ".off", ".stl", ".
   throw Error(ErrorKind::geometry, path.string() + " " + what, hint);
 }
 
+// In small letters. Throws Error(io) when there is no such file.
+std::string extension_of(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::io, "mesh file " + path.string() + " does not exist",
+                "paths are relative to the scene file");
+  }
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
 // A vertex by the bits of its position and texture coordinates.
 using VertexKey = std::array<std::uint64_t, 5>;
 struct VertexKeyHash {
@@ -149,12 +160,7 @@ class MeshBuilder {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorKind::io, "mesh file " + path.string() + " does not exist",
-                "paths are relative to the scene file");
-  }
+  const std::string extension = extension_of(path);
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
     fail(path, "has an unknown mesh format '" + extension + "'", "known: " + join_words(kExtensions));
   }
@@ -179,6 +185,17 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   } catch (const std::bad_alloc&) {
     fail(path, "is too large for the memory, or its header is broken");
   }
+}
+
+Points read_ply_vertices(const std::filesystem::path& path) {
+  if (extension_of(path) != ".ply") fail(path, "is no PLY file", "save its vertices as PLY");
+  const PolygonMesh mesh = read_ply(path.string(), read_file(path));
+  Points V(std::ssize(mesh.points), 3);
+  for (Eigen::Index i = 0; i < V.rows(); ++i) {
+    V.row(i) = mesh.points[static_cast<std::size_t>(i)].transpose();
+    if (!V.row(i).allFinite()) fail(path, "has a vertex that is not finite: vertex " + std::to_string(i));
+  }
+  return V;
 }
 
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh) {

@@ -15,6 +15,9 @@ namespace vivify {
 // (its index is named), or an index out of range.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
+// All vertices of a PLY file in the order of the file (#V by 3), whatever else it holds. Throws like read_mesh.
+Points read_ply_vertices(const std::filesystem::path& path);
+
 // Writes a binary little-endian PLY (positions and triangles).
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh);
 

@@ -143,10 +143,11 @@ Schema outline_schema() {
                   .field("font", path("A TrueType or OpenType font.").required())
                   .field("text", string("One or more characters, set on one line.").required())
                   .field("height", number("Height of the whole outline.").unit("m").above(0).initially(1)))
-      .option("polyline", object("An open line, for rods: it has no inside.")
-                              .field("points", list("Its points in order.", vector("A point, x and y.", 2).unit("m"))
-                                                   .items_at_least(2)
-                                                   .required()));
+      .option("polyline",
+              object("An open line, for rods: it has no inside.")
+                  .field("points", list("Its points in order.", vector("A point, x and y.", 2).unit("m"))
+                                       .items_at_least(2)
+                                       .required()));
 }
 
 Outline make_outline(const Value& value,

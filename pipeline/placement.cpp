@@ -9,6 +9,30 @@
 #include "common/text.h"
 
 namespace vivify::pipeline {
+namespace {
+
+Schema looks_schema() {
+  return dictionary(
+      "Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
+      "that is not named; without it such a part is grey.",
+      string("Name of a material."));
+}
+
+}  // namespace
+
+Schema placed_schema(std::string doc, bool mesh_required) {
+  Schema mesh = path("Surface: OBJ, PLY, OFF, STL, glTF or GLB, in metres, +Y up.");
+  if (mesh_required) mesh = std::move(mesh).required();
+  return object(std::move(doc))
+      .field("name", string("Name of the object: letters, digits, '-' and '_'.").required())
+      .field("mesh", std::move(mesh))
+      .field("position", vector("Where the origin of the asset is put.", 3).unit("m").initially({0, 0, 0}))
+      .field("scale", number("Size factor, applied first.").above(0).initially(1.0))
+      .field("heading_deg", number("Turn about +Y, applied after the scale; 0 looks along +Z, 90 along +X.")
+                                .unit("deg")
+                                .initially(0.0))
+      .field("looks", looks_schema());
+}
 
 void place(const Value& item, Points& V) {
   const double scale = item["scale"].as_number();
@@ -16,6 +40,11 @@ void place(const Value& item, Points& V) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::RowVector3d position = item["position"].as_vector3().transpose();
   V = ((scale * V) * turn.transpose()).rowwise() + position;
+}
+
+void place(const Value& item, Points2& V) {
+  const Eigen::RowVector2d position = item["position"].as_vector3().head<2>().transpose();
+  V = (item["scale"].as_number() * V).rowwise() + position;
 }
 
 TriangleMesh read_placed_mesh(const Scene& scene, const Value& item) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/mesh.h"
+#include "common/schema.h"
 #include "pipeline/scene_file.h"
 
 namespace vivify::pipeline {
@@ -12,9 +13,14 @@ namespace vivify::pipeline {
 // Name of the material of parts that the scene gives none: a grey.
 inline constexpr const char* kDefaultMaterial = "(default)";
 
-// Points (#V by 3) of an asset moved to the world: scale first, then heading, then position, as `item` (a
-// body, collider or prop) says.
+// Keys of everything that is placed in the world: name, mesh, position, scale, heading_deg, looks.
+Schema placed_schema(std::string doc, bool mesh_required);
+
+// Points (#V by 2 or 3) of an asset moved to the world: scale first, then heading, then position, as `item`
+// (a body, collider or prop) says.
 void place(const Value& item, Points& V);
+// In the plane there is no heading, and z has no effect.
+void place(const Value& item, Points2& V);
 
 // The mesh of a body, collider or prop, in the world. Throws Error(geometry) for a mesh that cannot be read;
 // the message names the object.

@@ -9,61 +9,16 @@
 #include "common/config.h"
 #include "common/file.h"
 #include "common/text.h"
-#include "meshing/cage.h"
-#include "meshing/harmonic.h"
-#include "meshing/tetrahedralize.h"
+#include "pipeline/body_settings.h"
+#include "pipeline/placement.h"
+#include "pipeline/pose_file.h"
 #include "render/scene.h"
-#include "sim/control/controller.h"
 #include "sim/elastic/models.h"
-#include "sim/settings.h"
 
 namespace vivify::pipeline {
 namespace {
 
 constexpr double kMostFrames = 1'000'000;
-
-Schema looks_schema() {
-  return dictionary(
-      "Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
-      "that is not named; without it such a part is grey.",
-      string("Name of a material."));
-}
-
-// Keys of everything that is placed in the world from a mesh file.
-Schema placed(std::string doc) {
-  return object(std::move(doc))
-      .field("name", string("Name of the object: letters, digits, '-' and '_'.").required())
-      .field("mesh", path("Surface: OBJ, PLY, OFF, STL, glTF or GLB, in metres, +Y up.").required())
-      .field("position", vector("Where the origin of the asset is put.", 3).unit("m").initially({0, 0, 0}))
-      .field("scale", number("Size factor, applied first.").above(0).initially(1.0))
-      .field("heading_deg", number("Turn about +Y, applied after the scale; 0 looks along +Z, 90 along +X.")
-                                .unit("deg")
-                                .initially(0.0))
-      .field("looks", looks_schema());
-}
-
-Schema rest_space_schema() {
-  return variant("How the rest shape may change.", "type")
-      .initially("cage")
-      .option("cage",
-              meshing::cage_schema().field(
-                  "harmonic_unknowns",
-                  integer("Size of the problem that gives the harmonic coordinates; more is more accurate.")
-                      .at_least(100)
-                      .at_most(1'000'000)
-                      .initially(meshing::HarmonicSettings().unknowns)));
-}
-
-Schema body_schema() {
-  return placed("A soft character or object.")
-      .field("tetrahedra", meshing::tetrahedra_schema())
-      .field("rest_space", rest_space_schema())
-      .field("model", sim::model_schema())
-      .field("regularizer", sim::regularizer_schema())
-      .field("contact", sim::contact_schema())
-      .field("controller", sim::controller_schema())
-      .field("solver", sim::solver_schema());
-}
 
 Schema video_schema() {
   return object("The video made of the pictures.")
@@ -76,7 +31,7 @@ Schema video_schema() {
 }
 
 Schema collider_schema() {
-  return placed("A fixed object that bodies touch.")
+  return placed_schema("A fixed object that bodies touch.", true)
       .field("friction",
              number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
       .field("visible", boolean("Whether it is drawn.").initially(true));
@@ -153,6 +108,7 @@ class SemanticCheck {
   void references() {
     names();
     looks();
+    bodies();
     camera();
     frames();
     picture();
@@ -201,6 +157,18 @@ class SemanticCheck {
              suggestion(material.as_string(), materials));
       }
     });
+  }
+
+  void bodies() {
+    const std::vector<Value>& bodies = scene_.settings["bodies"].items();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      check_body(bodies[i], "bodies[" + std::to_string(i) + "]", errors_);
+      for (const Value& example : examples_of(bodies[i])) {
+        const std::filesystem::path pose =
+            example.has("pose") ? scene_.resolve_path(example["pose"].as_string()) : "";
+        if (std::filesystem::is_regular_file(pose)) load_pose(pose, errors_);
+      }
+    }
   }
 
   void camera() {
@@ -260,15 +228,15 @@ Schema scene_schema() {
       .field("version", integer("Version of the scene format.").at_least(1).at_most(1).required())
       .field("frames", frames_schema())
       .field("gravity", vector("Acceleration of gravity.", 3).unit("m/s²").initially({0, -9.81, 0}))
-      .field("physics",
-             choice("What a step is. `dynamic`: motion with inertia, gravity and contact. `static`: the "
-                    "equilibrium of each body for its rest shape of that time, without any of them.",
-                    {"dynamic", "static"})
-                 .initially("dynamic"))
+      .field("physics", choice("What a step is. `dynamic`: motion with inertia, gravity and contact. `static`: the "
+                               "equilibrium of each body for its rest shape of that time, without any of them.",
+                               {"dynamic", "static"})
+                            .initially("dynamic"))
       .field("materials", dictionary("Looks, by name.", render::material_schema()))
       .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
       .field("colliders", list("Fixed objects that bodies touch.", collider_schema()))
-      .field("props", list("Objects that are drawn only.", placed("A fixed object that is drawn only.")))
+      .field("props",
+             list("Objects that are drawn only.", placed_schema("A fixed object that is drawn only.", true)))
       .field("camera", following_camera_schema())
       .field("lights", list("Lights. Without any, a uniform white environment.", render::light_schema()))
       .field("render", render::render_schema())

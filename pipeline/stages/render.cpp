@@ -2,7 +2,7 @@
 #include "render/render.h"
 
 #include "common/hdf5_file.h"
-#include "meshing/embedding.h"
+#include "meshing/skin.h"
 #include "pipeline/camera_path.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
@@ -77,8 +77,8 @@ std::vector<Product> products(const Job& job) {
 struct DrawnBody {
   std::string name;
   render::Mesh mesh;
-  meshing::Embedding embedding;
-  Tetrahedra T;
+  meshing::Skin skin;
+  RowMatrixXi elements;
   Eigen::VectorXd mass;
 };
 
@@ -86,10 +86,11 @@ DrawnBody load_body(const Job& job, const Value& body) {
   const Hdf5Reader file(job.out / mesh_file(body));
   DrawnBody drawn;
   drawn.name = body["name"].as_string();
-  drawn.T = file.int_matrix("/elements");
+  drawn.elements = file.int_matrix("/elements");
   drawn.mass = file.vector("/mass");
-  drawn.embedding.tet = file.int_vector("/embedding/tet");
-  drawn.embedding.weights = file.matrix("/embedding/weights");
+  drawn.skin.embedding = {file.int_vector("/embedding/element"), file.matrix("/embedding/weights")};
+  if (file.has("/embedding/offset")) drawn.skin.offset = file.vector("/embedding/offset");
+  if (file.has("/embedding/depth")) drawn.skin.depth = file.vector("/embedding/depth");
   drawn.mesh.name = drawn.name;
   drawn.mesh.F = file.int_matrix("/surface/F");
   if (file.has("/surface/UV")) drawn.mesh.UV = file.matrix("/surface/UV");
@@ -112,7 +113,8 @@ render::Mesh load_fixed(const Scene& scene, const Value& object) {
   return mesh;
 }
 
-Points body_positions(const Job& job, int frame, const std::string& body) {
+// Positions of the vertices of a body's simulation mesh (#V by 2 or 3).
+RowMatrixXd body_positions(const Job& job, int frame, const std::string& body) {
   return Hdf5Reader(job.out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
 }
 
@@ -122,10 +124,10 @@ Points camera_motion(const Job& job, const std::vector<DrawnBody>& bodies) {
   if (!camera.has("follow")) return Points::Zero(job.scene.frame_count, 3);
   for (const DrawnBody& body : bodies) {
     if (body.name != camera["follow"].as_string()) continue;
-    Points path(job.scene.frame_count, 3);
+    Points path = Points::Zero(job.scene.frame_count, 3);
     for (int frame = 1; frame <= job.scene.frame_count; ++frame) {
-      const Points x = body_positions(job, frame, body.name);
-      path.row(frame - 1) = (body.mass.transpose() * x) / body.mass.sum();
+      const RowMatrixXd x = body_positions(job, frame, body.name);
+      path.row(frame - 1).head(x.cols()) = (body.mass.transpose() * x) / body.mass.sum();
     }
     return camera_displacements(path, camera["follow_smooth_s"].as_number() * job.scene.fps,
                                 camera["follow_height"].as_bool());
@@ -159,7 +161,7 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
     frame.camera.target += motion.row(number - 1).transpose();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       frame.meshes[i].V =
-          meshing::interpolate(bodies[i].embedding, bodies[i].T, body_positions(job, number, bodies[i].name));
+          meshing::draw(bodies[i].skin, bodies[i].elements, body_positions(job, number, bodies[i].name));
     }
     const std::string note = "frame " + std::to_string(number);
     long shown = 0;

@@ -11,6 +11,8 @@
 #include "common/hdf5_file.h"
 #include "common/log.h"
 #include "common/stop.h"
+#include "meshing/skin.h"
+#include "pipeline/body_settings.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/placement.h"
@@ -36,19 +38,44 @@ std::vector<Product> products(const Job& job) {
   return products;
 }
 
+// Points of the drawn surface, or of the rod or shell itself: vertices and middles of edges. Bodies of the
+// plane touch with their points of z = 0.
+sim::ContactPoints load_contact_points(const Value& body, const SimMesh& rest, const Hdf5Reader& mesh) {
+  const auto count = static_cast<int>(body["contact"]["points"].as_integer());
+  const int corners = rest.element_points(), d = rest.dimension();
+  meshing::Embedding embedding;
+  Points surface;
+  const BodyKind kind = body_kind(body);
+  if (kind == BodyKind::rod || kind == BodyKind::shell) {
+    embedding = meshing::embed_edges(rest.E);
+    surface = Points::Zero(embedding.element.size(), 3);
+    surface.leftCols(d) = meshing::interpolate(embedding, rest.E, rest.V);
+  } else {
+    embedding = {mesh.int_vector("/embedding/element"), mesh.matrix("/embedding/weights")};
+    surface = mesh.matrix("/surface/V");
+    if (kind == BodyKind::flat) surface.col(2).setZero();
+  }
+  RowMatrixXi vertices(embedding.element.size(), corners);
+  for (Eigen::Index i = 0; i < vertices.rows(); ++i) vertices.row(i) = rest.E.row(embedding.element[i]);
+  return sim::select_contact_points(surface, vertices, embedding.weights, d, count);
+}
+
 sim::BodyInput load_body(const Job& job, const Value& body) {
-  const Hdf5Reader mesh(job.out / mesh_file(body));
+  const Hdf5Reader mesh(job.out / mesh_file(body)), weights(job.out / weights_file(body));
   sim::BodyInput input;
   input.name = body["name"].as_string();
   input.rest = {mesh.matrix("/X0"), mesh.int_matrix("/elements")};
   input.rest_space = body["rest_space"]["type"].as_string();
-  input.cage_weights = Hdf5Reader(job.out / weights_file(body)).matrix("/weights");
-  const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
-  RowMatrixXi corners(tet.size(), input.rest.E.cols());
-  for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.E.row(tet[i]);
-  input.contact_points = sim::select_contact_points(mesh.matrix("/surface/V"), corners,
-                                                    mesh.matrix("/embedding/weights"), input.rest.dimension(),
-                                                    static_cast<int>(body["contact"]["points"].as_integer()));
+  if (weights.has("/weights")) input.cage_weights = weights.matrix("/weights");
+  if (weights.has("/examples")) {
+    const std::vector<std::string> names = weights.texts("/examples/names");
+    const std::vector<std::string> groups = weights.texts("/examples/groups");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      input.examples.push_back(
+          {names[i], groups[i], weights.matrix("/examples/" + std::to_string(i) + "/V")});
+    }
+  }
+  input.contact_points = load_contact_points(body, input.rest, mesh);
   input.model = body["model"];
   input.regularizer = body["regularizer"];
   input.contact = body["contact"];
@@ -146,14 +173,14 @@ std::string summarize(const Job& job, const std::string& csv) {
   summary["bodies"] = nlohmann::ordered_json::object();
   for (const Value& body : job.scene.settings["bodies"].items()) {
     const std::string& name = body["name"].as_string();
-    const RowMatrixXd weights = Hdf5Reader(job.out / weights_file(body)).matrix("/weights");
+    const Hdf5Reader start(job.out / simulation_file(1));
     const std::vector<double> iterations = steps.column("sqp_iterations", name);
     const std::vector<double> fallback = steps.column("fallback", name);
     summary["bodies"][name] = {
         {"model", body["model"]["type"].as_string()},
         {"space", body["rest_space"]["type"].as_string()},
-        {"dofs", 3 * weights.rows()},
-        {"params", 3 * weights.cols()},
+        {"dofs", start.matrix("/bodies/" + name + "/x").size()},
+        {"params", start.vector("/bodies/" + name + "/p").size()},
         {"steps", iterations.size()},
         {"sqp_iterations_mean", mean(iterations)},
         {"sqp_iterations_p95", percentile(iterations, 0.95)},
