@@ -138,7 +138,7 @@ WorldSettings load_body(BodyInput& input, const std::filesystem::path& out) {
   input.rest.V = mesh.matrix("/X0");
   input.rest.E = mesh.int_matrix("/elements");
   input.cage_weights = Hdf5Reader(out / "weights" / (input.name + ".h5")).matrix("/weights");
-  const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
+  const Eigen::VectorXi tet = mesh.int_vector("/embedding/element");
   RowMatrixXi corners(tet.size(), 4);
   for (Eigen::Index i = 0; i < tet.size(); ++i) corners.row(i) = input.rest.E.row(tet[i]);
   input.contact_points =

@@ -120,7 +120,7 @@ TEST_P(TeacupScene, HopsAlongItsHeadingAndObeysTheLaws) {
   EXPECT_LE(steps.largest("internal_torque_sum_nm"), 1e-9 * weight * height);
 
   // The drawn cup, every vertex of it, never sinks visibly into the table.
-  const Eigen::VectorXi tet = mesh.int_vector("/embedding/tet");
+  const Eigen::VectorXi tet = mesh.int_vector("/embedding/element");
   const RowMatrixXd weights = mesh.matrix("/embedding/weights");
   const RowMatrixXi elements = mesh.int_matrix("/elements");
   double lowest = 0;
