@@ -137,20 +137,27 @@ void BlockCholesky::make_targets(const std::vector<int>& panel_of) {
       const Panel& target = panels_[panel_of[rows[i] / dim_]];
       const int* target_rows = rows_.data() + target.row_begin;
       const int* found = target_rows;
-      int run = static_cast<int>(runs_.size());
+      int chunk = static_cast<int>(chunks_.size());
       for (int j = i; j < panel.below(); j += dim_) {
         int place = rows[j] - target.first;
         if (place >= target.width) {
           found = std::lower_bound(found, target_rows + target.below(), rows[j]);
           place = target.width + static_cast<int>(found - target_rows);
         }
-        if (j == i || runs_.back().shift != place - j) runs_.push_back({j, j, place - j});
-        runs_.back().end += dim_;
+        for (int k = 0; k < dim_; ++k) {
+          const bool joined = j + k > i && chunks_.back().count < kLanes &&
+                              place + k == chunks_.back().place + chunks_.back().count;
+          if (joined) {
+            ++chunks_.back().count;
+          } else {
+            chunks_.push_back({j + k, place + k, 1});
+          }
+        }
       }
       for (; i < panel.below() && rows[i] < target.first + target.width; i += dim_) {
-        while (runs_[run].end <= i) ++run;
+        while (chunks_[chunk].row + chunks_[chunk].count <= i) ++chunk;
         targets_.push_back({target.value_begin + long(rows[i] - target.first) * target.stride, target.stride,
-                            run, static_cast<int>(runs_.size())});
+                            chunk, static_cast<int>(chunks_.size())});
       }
     }
   }
@@ -207,7 +214,7 @@ void BlockCholesky::update_targets(const Panel& panel) {
   for (int begin = 0; begin < panel.below(); begin += kUpdateColumns) {
     const double* rows = values_.data() + panel.value_begin + panel.width + begin;
     const int count = panel.below() - begin, columns = std::min(kUpdateColumns, count);
-    double* product = product_.data();
+    double* product = product_.data() + kSlack;
     const long product_stride = round_up(count, 2 * kLanes);
     with_constant<kUpdateColumns>(columns, [&](auto constant) {
       constexpr int kColumns = constant();
@@ -221,18 +228,23 @@ void BlockCholesky::update_targets(const Panel& panel) {
         });
       }
     });
-    for (int column = 0; column < columns; column += dim_) {
-      const Target& target = targets_[(panel.row_begin + begin + column) / dim_];
-      for (int r = target.first_run; r < target.last_run; ++r) {
-        const Run& run = runs_[r];
-        const int row = std::max(run.begin, begin + column);
-        double* to = values_.data() + target.column + row + run.shift;
-        const double* from = product + row - begin + column * product_stride;
-        for (int i = 0; i < dim_; ++i, to += target.stride, from += product_stride) {
-          add_entries(to, from, run.end - row);
+    with_constant<3>(dim_, [&](auto constant) {
+      constexpr int kDim = constant();
+      for (int column = 0; column < columns; column += kDim) {
+        const Target& target = targets_[(panel.row_begin + begin + column) / kDim];
+        double* to = values_.data() + target.column;
+        const double* from = product + column * product_stride - begin;
+        for (int c = target.first_chunk; c < target.last_chunk; ++c) {
+          const Chunk& chunk = chunks_[c];
+          const Vector4 mask = first_lanes(chunk.count);
+          for (int i = 0; i < kDim; ++i) {
+            double* place = to + chunk.place + i * target.stride;
+            const Vector4 added = _mm256_and_pd(_mm256_loadu_pd(from + chunk.row + i * product_stride), mask);
+            _mm256_storeu_pd(place, _mm256_add_pd(_mm256_loadu_pd(place), added));
+          }
         }
       }
-    }
+    });
   }
 }
 

@@ -46,15 +46,16 @@ class BlockCholesky {
 
     int below() const { return height - width; }
   };
-  // Rows begin … end − 1 below the columns of a panel are rows begin + shift … of another.
-  struct Run {
-    int begin, end, shift;
+  // Up to four rows from `row` below the columns of a panel on, which are rows from `place` on of another.
+  struct Chunk {
+    int row, place, count;
   };
   // Where the update of the columns of one vertex among the rows of a panel goes.
   struct Target {
     long column;  // the first of the columns, in values_
     int stride;
-    int first_run, last_run;  // of the rows from the vertex on, in runs_
+    // Of the rows from the vertex on, in chunks_; the first chunk may hold rows above the diagonal too.
+    int first_chunk, last_chunk;
   };
 
   void make_panels(const Elimination& elimination);
@@ -72,7 +73,7 @@ class BlockCholesky {
   std::vector<Panel> panels_;
   std::vector<int> rows_;        // of all panels, below their columns
   std::vector<Target> targets_;  // of each vertex in rows_
-  std::vector<Run> runs_;
+  std::vector<Chunk> chunks_;
   std::vector<long> slots_;  // place in values_ of every value of the matrix
   int most_rows_ = 0;        // of a panel
 

@@ -70,16 +70,11 @@ struct Tile {
   }
 };
 
-// Adds `count` entries; may add zeros to the next three.
-inline void add_entries(double* to, const double* from, int count) {
-  for (; count >= kLanes; count -= kLanes, to += kLanes, from += kLanes) {
-    _mm256_storeu_pd(to, _mm256_add_pd(_mm256_loadu_pd(to), _mm256_loadu_pd(from)));
-  }
-  if (count == 0) return;
-  static constexpr long kMasks[2 * kLanes] = {-1, -1, -1, -1, 0, 0, 0, 0};
-  const __m256i mask = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMasks + kLanes - count));
-  const Vector4 kept = _mm256_and_pd(_mm256_loadu_pd(from), _mm256_castsi256_pd(mask));
-  _mm256_storeu_pd(to, _mm256_add_pd(_mm256_loadu_pd(to), kept));
+// All bits of the first `count` <= 4 entries, none of the others.
+inline Vector4 first_lanes(int count) {
+  alignas(32) static constexpr long kBits[2 * kLanes] = {-1, -1, -1, -1, 0, 0, 0, 0};
+  const __m256i bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kBits + kLanes - count));
+  return _mm256_castsi256_pd(bits);
 }
 
 inline double sum(Vector4 v) {
