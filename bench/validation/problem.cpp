@@ -10,6 +10,7 @@ namespace {
 constexpr std::array kProblems = {
     ProblemEntry{"cantilever", cantilever},
     ProblemEntry{"large_deflection", large_deflection},
+    ProblemEntry{"inversion", inversion},
 };
 
 }  // namespace

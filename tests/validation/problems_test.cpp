@@ -19,7 +19,7 @@ TEST_P(Validation, KeepsItsTolerances) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Problems, Validation, ::testing::ValuesIn(problems().begin(), problems().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& problem) { return std::string(problem.param.name); });
 
 }  // namespace
 }  // namespace vivify::validation

@@ -2,14 +2,18 @@
 //   W = Σ_e ½ k_l ‖E‖² Ā + ½ k_a (a − A)² / Ā,
 // in the plane and, as the "straightforward extension", in space. E is measured in the reference metric
 // (Martin et al. 2011): E = Ē(x) − Ē(X); `solid2d_printed` takes F = S(x) S(X)⁻¹ as printed.
+#include <numbers>
+
 #include "sim/elastic/materials.h"
 #include "sim/elastic/models/models.h"
 
 namespace vivify::sim {
 namespace {
 
-// Least k_a, k_v as a share of k_l for which no element has a stable inverted state: 1/6 in the plane.
+// Least k_a and k_v as a share of k_l for which no element has a stable inverted state: 1/6 in the plane and
+// (2√2 − 1)/7 in space (docs/validation.md).
 constexpr double kLeastAreaShare = 1.0 / 6;
+constexpr double kLeastVolumeShare = (2 * std::numbers::sqrt2 - 1) / 7;
 
 ElasticModel build(const SimMesh& reference, RestLayout layout, const Materials& materials,
                    const char* strain_measure, const char* size_measure,
@@ -63,8 +67,11 @@ Schema solid3d_stvk_schema() {
           .field("density", number("Mass per volume.").unit("kg/m³").above(0).initially(300))
           .field("stiffness",
                  number("Stiffness k_l against Green strain.").unit("Pa").above(0).initially(130000))
-          .field("volume_stiffness",
-                 number("Stiffness k_v against change of volume.").unit("Pa").at_least(0).initially(130000)),
+          .field("volume_stiffness", number("Stiffness k_v against change of volume; below 0.2612 k_l single "
+                                            "elements can stay inverted.")
+                                         .unit("Pa")
+                                         .at_least(0)
+                                         .initially(130000)),
       "Pa");
 }
 
@@ -86,8 +93,8 @@ std::string solid2d_warning(const Value& material) {
 
 std::string solid3d_stvk_warning(const Value& material) {
   const Stiffness k = stvk_stiffness(material);
-  if (k.size >= kLeastAreaShare * k.stretch) return {};
-  return "volume_stiffness is below a sixth of stiffness: tetrahedra can stay turned inside out";
+  if (k.size >= kLeastVolumeShare * k.stretch) return {};
+  return "volume_stiffness is below 0.2612 times stiffness: tetrahedra can stay turned inside out";
 }
 
 }  // namespace vivify::sim
