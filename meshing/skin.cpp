@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "meshing/closest_point.h"
+
 namespace vivify::meshing {
 namespace {
 
@@ -43,6 +45,35 @@ std::vector<std::array<int, 2>> elements_at(const Eigen::Ref<const RowMatrixXi>&
     for (int k = 0; k < E.cols(); ++k) at[static_cast<std::size_t>(E(e, k))] = {e, k};
   }
   return at;
+}
+
+// The nearest point of the triangles for every point (#P by 3), and how far it lies on the side of the
+// normal.
+std::pair<Embedding, Eigen::VectorXd> follow_triangles(const Points& points, const Points& V,
+                                                       const Triangles& F) {
+  const ClosestPoint nearest({V, F, {}, {}, {}});
+  const Points normals = vertex_normals(V, F);
+  Embedding embedding;
+  embedding.element.resize(points.rows());
+  embedding.weights.resize(points.rows(), 3);
+  Eigen::VectorXd distance(points.rows());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Eigen::Vector3d p = points.row(i);
+    const ClosestPoint::Hit hit = nearest(p);
+    const Eigen::Vector3d a = V.row(F(hit.triangle, 0)), b = V.row(F(hit.triangle, 1)),
+                          c = V.row(F(hit.triangle, 2)), n = (b - a).cross(c - a);
+    Eigen::Vector3d weights((c - b).cross(hit.point - b).dot(n), (a - c).cross(hit.point - c).dot(n),
+                            (b - a).cross(hit.point - a).dot(n));
+    weights = weights.cwiseMax(0);
+    weights /= weights.sum();
+    embedding.element[i] = hit.triangle;
+    embedding.weights.row(i) = weights.transpose();
+    const Eigen::Vector3d normal = weights[0] * normals.row(F(hit.triangle, 0)) +
+                                   weights[1] * normals.row(F(hit.triangle, 1)) +
+                                   weights[2] * normals.row(F(hit.triangle, 2));
+    distance[i] = (p - hit.point).dot(normal);
+  }
+  return {std::move(embedding), std::move(distance)};
 }
 
 }  // namespace
@@ -146,37 +177,58 @@ SkinnedSurface rod_band(const Points2& V, const Edges& E, double thickness, doub
   return result;
 }
 
-SkinnedSurface thick_shell(const TriangleMesh& surface, const Eigen::VectorXi& vertex, const Points& V,
-                           const Triangles& F, double thickness) {
-  const auto count = static_cast<int>(surface.V.rows()), faces = static_cast<int>(surface.F.rows());
-  // Edges of the simulated triangles that have a triangle on one side only, with their drawn vertices.
+SkinnedSurface thick_shell(const TriangleMesh& surface, const Points& V, const Triangles& F,
+                           double thickness) {
+  const auto count = static_cast<int>(surface.V.rows());
+  const auto [embedding, distance] = follow_triangles(surface.V, V, F);
+  const RowMatrixXd normals = interpolate(embedding, F, vertex_normals(V, F));
+
+  // Vertices in the same place count as one where borders are looked for.
+  std::map<std::array<double, 3>, int> places;
+  std::vector<int> place;
+  for (const auto& v : surface.V.rowwise()) {
+    place.push_back(
+        places.emplace(std::array{v[0], v[1], v[2]}, static_cast<int>(places.size())).first->second);
+  }
+  const auto edge_of = [&](const Eigen::RowVector3i& f, int k) {
+    return std::minmax(place[static_cast<std::size_t>(f[k])],
+                       place[static_cast<std::size_t>(f[(k + 1) % 3])]);
+  };
+  // The drawn triangles, turned to face as the simulated ones.
+  std::vector<Eigen::RowVector3i> front;
+  std::vector<int> source;
   std::map<std::pair<int, int>, int> uses;
-  for (int f = 0; f < faces; ++f) {
-    for (int k = 0; k < 3; ++k) ++uses[std::minmax(F(f, k), F(f, (k + 1) % 3))];
+  for (int f = 0; f < static_cast<int>(surface.F.rows()); ++f) {
+    Eigen::RowVector3i face = surface.F.row(f);
+    const Eigen::Vector3d a = surface.V.row(face[0]), b = surface.V.row(face[1]), c = surface.V.row(face[2]);
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    if (normal.isZero(0)) continue;
+    const Eigen::RowVector3d side = normals.row(face[0]) + normals.row(face[1]) + normals.row(face[2]);
+    if (normal.dot(side.transpose()) < 0) std::swap(face[1], face[2]);
+    front.push_back(face);
+    source.push_back(f);
+    for (int k = 0; k < 3; ++k) ++uses[edge_of(face, k)];
   }
-  std::vector<Eigen::RowVector3i> triangles;
-  std::vector<int> face;  // whose part each has
-  for (int f = 0; f < faces; ++f) {
-    triangles.emplace_back(surface.F.row(f));
-    face.push_back(f);
+
+  std::vector<Eigen::RowVector3i> triangles = front;
+  std::vector<int> face = source;  // whose part each has
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    triangles.emplace_back(front[i][0] + count, front[i][2] + count, front[i][1] + count);
+    face.push_back(source[i]);
   }
-  for (int f = 0; f < faces; ++f) {
-    triangles.emplace_back(surface.F(f, 0) + count, surface.F(f, 2) + count, surface.F(f, 1) + count);
-    face.push_back(f);
-  }
-  for (int f = 0; f < faces; ++f) {
+  for (std::size_t i = 0; i < front.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      if (uses[std::minmax(F(f, k), F(f, (k + 1) % 3))] != 1) continue;
-      const int a = surface.F(f, k), b = surface.F(f, (k + 1) % 3);
+      if (uses[edge_of(front[i], k)] != 1) continue;
+      const int a = front[i][k], b = front[i][(k + 1) % 3];
       triangles.emplace_back(a, a + count, b);
       triangles.emplace_back(b, a + count, b + count);
-      face.insert(face.end(), 2, f);
+      face.insert(face.end(), 2, source[i]);
     }
   }
 
   SkinnedSurface result;
   result.surface.part_names = surface.part_names;
-  result.surface.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  result.surface.F.resize(std::ssize(triangles), 3);
   const bool parts = surface.face_part.size() > 0;
   if (parts) result.surface.face_part.resize(result.surface.F.rows());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -188,12 +240,12 @@ SkinnedSurface thick_shell(const TriangleMesh& surface, const Eigen::VectorXi& v
     result.surface.UV.resize(2 * count, 2);
     result.surface.UV << surface.UV, surface.UV;
   }
-  Eigen::VectorXi both(2 * count);
-  both << vertex, vertex;
-  result.skin.embedding = embed_vertices(F, both);
+  result.skin.embedding.element.resize(2 * count);
+  result.skin.embedding.element << embedding.element, embedding.element;
+  result.skin.embedding.weights.resize(2 * count, 3);
+  result.skin.embedding.weights << embedding.weights, embedding.weights;
   result.skin.offset.resize(2 * count);
-  result.skin.offset << Eigen::VectorXd::Constant(count, thickness / 2),
-      Eigen::VectorXd::Constant(count, -thickness / 2);
+  result.skin.offset << distance.array() + thickness / 2, distance.array() - thickness / 2;
   result.surface.V = draw(result.skin, F, V);
   return result;
 }

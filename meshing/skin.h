@@ -34,11 +34,11 @@ Embedding embed_edges(const Eigen::Ref<const RowMatrixXi>& E);
 SkinnedSurface rod_band(const Points2& V, const Edges& E, double thickness, double depth, double bevel,
                         double z);
 
-// A shell as a plate of the given thickness around its middle surface `surface` (as drawn: vertices may be
-// split at texture seams): both sides and a rim along the borders. `vertex` (#surface.V) is the simulated
-// vertex of each drawn one; F are the simulated triangles, in the order of the drawn ones. Parts and texture
-// coordinates are those of `surface`.
-SkinnedSurface thick_shell(const TriangleMesh& surface, const Eigen::VectorXi& vertex, const Points& V,
-                           const Triangles& F, double thickness);
+// A shell as a plate of the given thickness: both sides of `surface` (which may be split at texture seams and
+// finer than the simulation), and a rim along its borders. It follows the triangles F (facing alike) of the
+// points V: each drawn vertex the nearest point of them, at the distance that it has at rest. Parts and
+// texture coordinates are those of `surface`.
+SkinnedSurface thick_shell(const TriangleMesh& surface, const Points& V, const Triangles& F,
+                           double thickness);
 
 }  // namespace vivify::meshing

@@ -71,10 +71,11 @@ Schema rest_space_schema() {
 
 Schema triangles_schema() {
   return object("The triangles of a flat solid or of a shell.")
-      .field("vertices", integer("Wanted number of vertices of a flat solid; the mesh has this many within "
-                                 "15 %. Left out: 80. A shell is simulated with the triangles of its file.")
-                             .at_least(20)
-                             .at_most(20000));
+      .field("vertices",
+             integer("Wanted number of vertices; the mesh has this many within 15 %. Left out: 80 for "
+                     "a flat solid; a shell keeps the triangles of its file.")
+                 .at_least(20)
+                 .at_most(20000));
 }
 
 Schema edges_schema() {
@@ -140,13 +141,7 @@ class BodyCheck {
     const std::string wanted = entry_of(kind_).elements;
     for (const std::string key : {"tetrahedra", "triangles", "edges"}) {
       if (key == wanted || !given(body_, key)) continue;
-      fail(body_[key], where_ + "." + key + " does not fit: " + made_of(),
-           kind_ == BodyKind::shell ? "remove it" : "use `" + wanted + "`");
-    }
-    if (kind_ == BodyKind::shell && body_["triangles"].has("vertices")) {
-      fail(body_["triangles"]["vertices"],
-           where_ + ".triangles.vertices does not fit: a shell is simulated with the triangles of its file",
-           "remove it, and bring a mesh of the wanted resolution");
+      fail(body_[key], where_ + "." + key + " does not fit: " + made_of(), "use `" + wanted + "`");
     }
     if (!is_planar(kind_) && given(body_, "extrude")) {
       fail(body_["extrude"], where_ + ".extrude does not fit: " + made_of() + " and is drawn as it is",

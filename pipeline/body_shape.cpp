@@ -1,14 +1,12 @@
 #include "pipeline/body_shape.h"
 
-#include <array>
-#include <map>
-
 #include "common/error.h"
 #include "common/log.h"
 #include "meshing/extrude.h"
 #include "meshing/planar_mesh.h"
 #include "meshing/repair.h"
 #include "meshing/rod.h"
+#include "meshing/shell_mesh.h"
 #include "meshing/tetrahedralize.h"
 #include "pipeline/body_settings.h"
 #include "pipeline/placement.h"
@@ -49,30 +47,20 @@ BodyShape make_solid(const Scene& scene, const Value& body) {
   return shape;
 }
 
-// The drawn vertices in the same place are one vertex of the simulation: files split them at texture seams.
 BodyShape make_shell(const Scene& scene, const Value& body) {
   const TriangleMesh surface = read_placed_mesh(scene, body);
   part_materials(body, surface.part_names);
-  std::map<std::array<double, 3>, int> known;
-  Eigen::VectorXi vertex(surface.V.rows());
-  Points V(surface.V.rows(), 3);
-  for (Eigen::Index i = 0; i < surface.V.rows(); ++i) {
-    const auto [entry, fresh] = known.emplace(std::array{surface.V(i, 0), surface.V(i, 1), surface.V(i, 2)},
-                                              static_cast<int>(known.size()));
-    vertex[i] = entry->second;
-    if (fresh) V.row(entry->second) = surface.V.row(i);
-  }
-  V.conservativeResize(static_cast<Eigen::Index>(known.size()), 3);
-  Triangles F(surface.F.rows(), 3);
-  for (Eigen::Index f = 0; f < F.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) F(f, k) = vertex[surface.F(f, k)];
-  }
+  const Value& wanted = body["triangles"]["vertices"];
+  const meshing::ShellMesh shell =
+      meshing::shell_mesh(surface, wanted.is_null() ? 0 : static_cast<int>(wanted.as_integer()));
+  for (const std::string& note : shell.notes) log_info(body["name"].as_string() + ": " + note);
   meshing::SkinnedSurface skinned =
-      meshing::thick_shell(surface, vertex, V, F, body["model"]["thickness"].as_number());
+      meshing::thick_shell(surface, shell.mesh.V, shell.mesh.F, body["model"]["thickness"].as_number());
   BodyShape shape;
-  shape.mesh = {V, F};
+  shape.mesh = {shell.mesh.V, shell.mesh.F};
   shape.surface = std::move(skinned.surface);
   shape.skin = std::move(skinned.skin);
+  shape.notes = shell.notes;
   return shape;
 }
 

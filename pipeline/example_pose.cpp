@@ -1,5 +1,9 @@
 #include "pipeline/example_pose.h"
 
+#include <array>
+#include <map>
+#include <optional>
+
 #include "common/error.h"
 #include "common/mesh_io.h"
 #include "pipeline/body_settings.h"
@@ -13,24 +17,26 @@ namespace {
   throw Error(ErrorKind::geometry, "the example " + file.as_string() + " " + problem, hint, file.where());
 }
 
-// The vertices of a surface that has the triangles of the shell in the same order (#V by 3).
-RowMatrixXd shell_pose(const TriangleMesh& surface, const SimMesh& rest, const Value& file) {
-  if (surface.F.rows() != rest.E.rows()) {
-    fail(file,
-         "has " + std::to_string(surface.F.rows()) + " triangles and the body has " +
-             std::to_string(rest.E.rows()),
-         "move the vertices of the body's own mesh and change nothing else");
+// Whether two surfaces have the same triangles in the same order, each between the same vertices.
+bool same_triangles(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.V.rows() == b.V.rows() && a.F.rows() == b.F.rows() && a.F == b.F;
+}
+
+// The posed places of the vertices of a shell that keeps the triangles of its file (#V by 3); nothing when
+// the pose has other triangles. Drawn vertices in the same place are one vertex of the shell.
+std::optional<Points> shell_pose(const Scene& scene, const Value& body, const TriangleMesh& posed,
+                                 const Points& rest) {
+  const TriangleMesh surface = read_placed_mesh(scene, body);
+  if (!same_triangles(surface, posed)) return std::nullopt;
+  std::map<std::array<double, 3>, Eigen::Index> drawn;
+  for (Eigen::Index i = 0; i < surface.V.rows(); ++i) {
+    drawn.emplace(std::array{surface.V(i, 0), surface.V(i, 1), surface.V(i, 2)}, i);
   }
-  RowMatrixXd pose(rest.V.rows(), 3);
-  for (Eigen::Index f = 0; f < rest.E.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) pose.row(rest.E(f, k)) = surface.V.row(surface.F(f, k));
-  }
-  for (Eigen::Index f = 0; f < rest.E.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      if (pose.row(rest.E(f, k)) == surface.V.row(surface.F(f, k))) continue;
-      fail(file, "joins its triangles in another way than the body, at triangle " + std::to_string(f),
-           "move the vertices of the body's own mesh and change nothing else");
-    }
+  Points pose(rest.rows(), 3);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const auto found = drawn.find({rest(i, 0), rest(i, 1), rest(i, 2)});
+    if (found == drawn.end()) return std::nullopt;
+    pose.row(i) = posed.V.row(found->second);
   }
   return pose;
 }
@@ -52,10 +58,16 @@ RowMatrixXd example_pose(const Scene& scene, const Value& body, const Value& exa
   }
   const Value& file = example["file"];
   const std::filesystem::path path = scene.resolve_path(file.as_string());
-  if (body_kind(body) == BodyKind::shell) {
-    TriangleMesh surface = read_mesh(path);
-    place(body, surface.V);
-    return shell_pose(surface, rest, file);
+  const bool own_triangles = body_kind(body) == BodyKind::shell && !body["triangles"].has("vertices");
+  if (own_triangles) {
+    TriangleMesh posed = read_mesh(path);
+    place(body, posed.V);
+    if (const auto pose = shell_pose(scene, body, posed, rest.V)) return *pose;
+  }
+  if (path.extension() != ".ply") {
+    fail(file, own_triangles ? "has other triangles than the body" : "is no PLY file",
+         own_triangles ? "move the vertices of the body's own mesh and change nothing else"
+                       : "make it with `vivify pose`");
   }
   Points V = read_ply_vertices(path);
   if (V.rows() != rest.V.rows()) {

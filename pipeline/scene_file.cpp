@@ -12,6 +12,8 @@
 #include "pipeline/body_settings.h"
 #include "pipeline/placement.h"
 #include "pipeline/pose_file.h"
+#include "render/lens.h"
+#include "render/lights/light.h"
 #include "render/scene.h"
 #include "sim/elastic/models.h"
 
@@ -194,11 +196,25 @@ class SemanticCheck {
     }
   }
 
+  // What the renderer would say of camera and lights, before anything is simulated. Lights with a file are
+  // left out: images are read when they are needed.
   void picture() {
+    const Value& camera = scene_.settings["camera"];
+    attempt(camera, [&] {
+      const render::RenderSettings settings = render::make_settings(scene_.settings["render"]);
+      render::Lens(render::make_camera(camera), settings.width, settings.height);
+    });
+    for (const Value& light : scene_.settings["lights"].items()) {
+      if (!light.has("file")) attempt(light, [&] { render::make_light(light, scene_.folder); });
+    }
+  }
+
+  void attempt(const Value& value, const std::function<void()>& make) {
     try {
-      render::make_settings(scene_.settings["render"]);
+      make();
     } catch (const Error& error) {
-      errors_.push_back(error);
+      const bool placed = !error.where().file.empty();
+      errors_.emplace_back(error.kind(), error.what(), error.hint(), placed ? error.where() : value.where());
     }
   }
 
@@ -228,10 +244,11 @@ Schema scene_schema() {
       .field("version", integer("Version of the scene format.").at_least(1).at_most(1).required())
       .field("frames", frames_schema())
       .field("gravity", vector("Acceleration of gravity.", 3).unit("m/s²").initially({0, -9.81, 0}))
-      .field("physics", choice("What a step is. `dynamic`: motion with inertia, gravity and contact. `static`: the "
-                               "equilibrium of each body for its rest shape of that time, without any of them.",
-                               {"dynamic", "static"})
-                            .initially("dynamic"))
+      .field("physics",
+             choice("What a step is. `dynamic`: motion with inertia, gravity and contact. `static`: the "
+                    "equilibrium of each body for its rest shape of that time, without any of them.",
+                    {"dynamic", "static"})
+                 .initially("dynamic"))
       .field("materials", dictionary("Looks, by name.", render::material_schema()))
       .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
       .field("colliders", list("Fixed objects that bodies touch.", collider_schema()))
@@ -244,6 +261,17 @@ Schema scene_schema() {
 }
 
 std::filesystem::path Scene::resolve_path(const std::string& path) const { return folder / path; }
+
+std::vector<Warning> scene_warnings(const Scene& scene) {
+  std::vector<Warning> warnings;
+  const std::vector<Value>& bodies = scene.settings["bodies"].items();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (const std::string& text : sim::model_warnings(bodies[i]["model"])) {
+      warnings.push_back({bodies[i]["model"].where(), "bodies[" + std::to_string(i) + "]." + text});
+    }
+  }
+  return warnings;
+}
 
 std::optional<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                 std::vector<Error>& errors) {

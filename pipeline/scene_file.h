@@ -39,4 +39,11 @@ struct Scene {
 std::optional<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                 std::vector<Error>& errors);
 
+// Something in a scene that is legal but seldom meant.
+struct Warning {
+  Location where;
+  std::string text;
+};
+std::vector<Warning> scene_warnings(const Scene& scene);
+
 }  // namespace vivify::pipeline
