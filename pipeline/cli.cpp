@@ -103,6 +103,15 @@ class CommandLine {
         ->excludes(json);
     schema.callback([this] { command_ = [this] { return schema_command(schema_markdown_); }; });
 
+    CLI::App& pose =
+        add("pose", "Make an example pose: bring a body into the shape that its handles ask for");
+    pose.add_option("pose", pose_.pose, "Pose file (YAML)")->required();
+    pose.add_option("-o,--output", pose_.output, "PLY file (default: beside the pose file)");
+    pose.add_option("--set", pose_.set, "Change a setting of the scene: path.to.key=value (repeatable)")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    pose.callback([this] { command_ = [this] { return pose_command(pose_); }; });
+
     CLI::App& sheet = add("sheet", "Contact sheet (PNG) of the frames of a run");
     sheet.add_option("folder", sheet_.folder, "Output folder of a run")->required();
     sheet.add_option("-o,--output", sheet_.output, "PNG file (default: FOLDER/sheet.png)");
@@ -126,7 +135,7 @@ class CommandLine {
       return app_.exit(error) == 0 ? 0 : kUsageExit;
     }
     log_to_stderr(common_.level());
-    scene_.quiet = common_.quiet;
+    scene_.quiet = pose_.quiet = common_.quiet;
     return command_();
   }
 
@@ -141,6 +150,7 @@ class CommandLine {
   CommonOptions common_;
   SceneCommand scene_;
   CheckCommand check_;
+  PoseCommand pose_;
   SheetCommand sheet_;
   DiffCommand diff_;
   bool schema_json_ = false;

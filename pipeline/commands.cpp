@@ -1,14 +1,20 @@
 #include "pipeline/commands.h"
 
 #include <charconv>
+#include <cmath>
 #include <iostream>
+#include <numeric>
 
 #include "common/error.h"
 #include "common/file.h"
 #include "common/log.h"
+#include "common/mesh_io.h"
 #include "common/parallel.h"
+#include "common/text.h"
+#include "pipeline/body_shape.h"
 #include "pipeline/diff.h"
 #include "pipeline/frame_range.h"
+#include "pipeline/pose_file.h"
 #include "pipeline/runner.h"
 #include "pipeline/scene_file.h"
 #include "pipeline/sheet.h"
@@ -19,12 +25,6 @@ namespace {
 
 void print_errors(const std::vector<Error>& errors) {
   for (const Error& error : errors) std::cerr << error.full_text() << "\n";
-}
-
-void print_warnings(const Scene& scene) {
-  for (const Warning& warning : scene_warnings(scene)) {
-    std::cerr << warning.where.text() << ": warning: " << warning.text << "\n";
-  }
 }
 
 // "480x270" as a setting of the scene.
@@ -74,6 +74,31 @@ void print_plan(const Job& job, const RunOptions& options) {
   }
 }
 
+// The body of the scene that a pose file names.
+const Value& posed_body(const Scene& scene, const Value& pose) {
+  const std::vector<Value>& bodies = scene.settings["bodies"].items();
+  const Value& name = pose["body"];
+  if (name.is_null()) {
+    if (bodies.size() == 1) return bodies.front();
+    throw Error(ErrorKind::usage,
+                "body is missing: the scene has " + std::to_string(bodies.size()) + " bodies", "",
+                pose.where());
+  }
+  std::vector<std::string> known;
+  for (const Value& body : bodies) {
+    if (body["name"].as_string() == name.as_string()) return body;
+    known.push_back(body["name"].as_string());
+  }
+  throw Error(ErrorKind::usage, "body = " + name.as_string() + ": there is no such body in the scene",
+              known.empty() ? "" : "known: " + join_words(known), name.where());
+}
+
+// The triangles with which a simulation mesh is drawn; none for rods.
+Triangles surface_triangles(const SimMesh& mesh) {
+  if (mesh.element_points() == 4) return boundary_faces({mesh.V, mesh.E});
+  return mesh.element_points() == 3 ? Triangles(mesh.E) : Triangles(0, 3);
+}
+
 }  // namespace
 
 int run_stages_command(const SceneCommand& command, const std::string& last_stage) {
@@ -84,7 +109,6 @@ int run_stages_command(const SceneCommand& command, const std::string& last_stag
     print_errors(errors);
     return exit_code(errors.front().kind());
   }
-  if (!command.quiet) print_warnings(*scene);
   Job job{*scene, command.out.empty() ? std::filesystem::path("out") / scene->name : command.out,
           command.frames.empty() ? all_frames(scene->frame_count)
                                  : parse_frames(command.frames, scene->frame_count),
@@ -111,7 +135,7 @@ int check_command(const CheckCommand& command) {
   std::vector<Error> errors;
   for (const std::filesystem::path& file : command.scenes) {
     try {
-      if (const std::optional<Scene> scene = load_scene(file, command.set, errors)) print_warnings(*scene);
+      load_scene(file, command.set, errors);
     } catch (const Error& error) {
       errors.push_back(error);
     }
@@ -122,7 +146,44 @@ int check_command(const CheckCommand& command) {
 
 int schema_command(bool as_markdown) {
   const Schema schema = scene_schema();
-  std::cout << (as_markdown ? markdown(schema) : json_schema(schema, "vivify scene"));
+  if (as_markdown) {
+    std::cout << markdown(schema) << "\n# Pose files\n\n" << markdown(pose_schema());
+  } else {
+    std::cout << json_schema(schema, "vivify scene");
+  }
+  return 0;
+}
+
+int pose_command(const PoseCommand& command) {
+  std::vector<Error> errors;
+  const Value pose = load_pose(command.pose, errors);
+  if (errors.empty() && !pose.has("scene")) {
+    errors.emplace_back(ErrorKind::usage, "scene is missing: it says what body is posed", "", pose.where());
+  }
+  std::optional<Scene> scene;
+  if (errors.empty()) {
+    scene = load_scene(command.pose.parent_path() / pose["scene"].as_string(), command.set, errors);
+  }
+  if (!scene) {
+    print_errors(errors);
+    return exit_code(errors.front().kind());
+  }
+
+  const Value& body = posed_body(*scene, pose);
+  const SimMesh rest = make_body_shape(*scene, body).mesh;
+  const sim::PoseSolution solution =
+      solve_pose(pose, rest, body["model"], scene->settings["gravity"].as_vector3());
+  std::filesystem::path output = command.output;
+  if (output.empty()) output = std::filesystem::path(command.pose).replace_extension(".ply");
+  write_ply(output, {in_asset_coordinates(solution.V, body), surface_triangles(rest), {}, {}, {}});
+
+  const int held = std::accumulate(solution.held.begin(), solution.held.end(), 0);
+  log_info(body["name"].as_string() + ": " + std::to_string(solution.held.size()) + " handles hold " +
+           std::to_string(held) + " of " + std::to_string(rest.V.rows()) + " vertices; equilibrium after " +
+           std::to_string(solution.increments) + " increments and " + std::to_string(solution.iterations) +
+           " iterations; the smallest element has " +
+           number_text(std::round(1000 * solution.smallest_element) / 1000) + " of its size");
+  if (!command.quiet) std::cout << output.string() << "\n";
   return 0;
 }
 

@@ -32,6 +32,16 @@ int check_command(const CheckCommand& command);
 
 int schema_command(bool as_markdown);
 
+struct PoseCommand {
+  std::filesystem::path pose;
+  std::filesystem::path output;  // empty: the pose file with the ending .ply
+  std::vector<std::string> set;  // changes of the scene
+  bool quiet = false;
+};
+// Solves a pose file and writes the posed simulation mesh, all vertices in their order, in the coordinates of
+// the asset: a PLY that can be an example of a rest space.
+int pose_command(const PoseCommand& command);
+
 struct SheetCommand {
   std::filesystem::path folder;
   std::filesystem::path output;  // empty: folder/sheet.png

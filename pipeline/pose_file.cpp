@@ -19,7 +19,7 @@ Schema region_schema() {
 
 Schema handle_schema() {
   return object("Takes hold of a part of the body and scales it, turns it and moves it, in this order.")
-      .field("region", region_schema())
+      .field("region", region_schema().required())
       .field("pin", boolean("Holds the part where it is.").initially(false))
       .field("move", vector("How far it is moved.", 3).unit("m").initially({0, 0, 0}))
       .field("rotate_deg",

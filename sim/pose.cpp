@@ -210,7 +210,8 @@ class PoseSolver {
                   "move the handles less, or let them hold other parts of the body");
     }
     throw Error(ErrorKind::numerical,
-                way + "then an element is squeezed to " + number_text(smallest) + " of its size",
+                way + "then an element is squeezed to " + number_text(std::round(1000 * smallest) / 1000) +
+                    " of its size",
                 "move the handles less, let them hold less of the body, or raise model.volume_stiffness");
   }
 

@@ -29,8 +29,8 @@ TEST(Cli, SaysItsVersion) {
 TEST(Cli, HelpNamesEveryCommand) {
   const Outcome outcome = vivify({"--help"});
   EXPECT_EQ(outcome.code, 0);
-  for (const char* command :
-       {"run", "mesh", "weights", "simulate", "render", "encode", "check", "schema", "sheet", "diff"}) {
+  for (const char* command : {"run", "mesh", "weights", "simulate", "render", "encode", "check", "schema",
+                              "pose", "sheet", "diff"}) {
     EXPECT_THAT(outcome.out, HasSubstr(command));
   }
 }
