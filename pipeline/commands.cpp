@@ -27,6 +27,12 @@ void print_errors(const std::vector<Error>& errors) {
   for (const Error& error : errors) std::cerr << error.full_text() << "\n";
 }
 
+void print_warnings(const Scene& scene) {
+  for (const Warning& warning : scene_warnings(scene)) {
+    std::cerr << warning.where.text() << ": warning: " << warning.text << "\n";
+  }
+}
+
 // "480x270" as a setting of the scene.
 std::string size_override(const std::string& size) {
   int width = 0;
@@ -109,6 +115,7 @@ int run_stages_command(const SceneCommand& command, const std::string& last_stag
     print_errors(errors);
     return exit_code(errors.front().kind());
   }
+  if (!command.quiet) print_warnings(*scene);
   Job job{*scene, command.out.empty() ? std::filesystem::path("out") / scene->name : command.out,
           command.frames.empty() ? all_frames(scene->frame_count)
                                  : parse_frames(command.frames, scene->frame_count),
@@ -135,7 +142,7 @@ int check_command(const CheckCommand& command) {
   std::vector<Error> errors;
   for (const std::filesystem::path& file : command.scenes) {
     try {
-      load_scene(file, command.set, errors);
+      if (const std::optional<Scene> scene = load_scene(file, command.set, errors)) print_warnings(*scene);
     } catch (const Error& error) {
       errors.push_back(error);
     }
