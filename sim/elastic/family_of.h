@@ -70,13 +70,25 @@ class FamilyOf final : public MeasureFamily {
   }
 
   RowMatrixXd gather(Side side, const Eigen::VectorXd& g, const RowMatrixXd& Y) const override {
-    RowMatrixXd result = RowMatrixXd::Zero(value_count(), Y.cols());
+    const Eigen::Index columns = Y.cols();
+    RowMatrixXd result(value_count(), columns);
+    std::array<const double*, kSize> rows;
+    std::array<double, kSize> weights;
     for (int i = 0; i < size(); ++i) {
       const int* points = stencil_of(side, i);
+      for (int r = 0; r < kSize; ++r) rows[r] = Y.data() + (kDim * points[r / kDim] + r % kDim) * columns;
       for (int c = 0; c < kComponents; ++c) {
-        auto row = result.row(kComponents * i + c);
-        for (int r = 0; r < kSize; ++r) {
-          row.noalias() += gradient_entry(g, i, c, r) * Y.row(kDim * points[r / kDim] + r % kDim);
+        for (int r = 0; r < kSize; ++r) weights[r] = gradient_entry(g, i, c, r);
+        double* out = result.data() + (kComponents * i + c) * columns;
+        Eigen::Index column = 0;
+        for (; column + 2 * kLane <= columns; column += 2 * kLane) {
+          combine<2>(rows, weights, column, out);
+        }
+        for (; column + kLane <= columns; column += kLane) combine<1>(rows, weights, column, out);
+        for (; column < columns; ++column) {
+          double sum = 0;
+          for (int r = 0; r < kSize; ++r) sum += weights[r] * rows[r][column];
+          out[column] = sum;
         }
       }
     }
@@ -203,6 +215,20 @@ class FamilyOf final : public MeasureFamily {
     return g[i / kLane * kGradient + (component * kSize + row) * kLane + i % kLane];
   }
 
+  // `Packs` packs of columns of the weighted sum of rows.
+  template <int Packs>
+  static void combine(const std::array<const double*, kSize>& rows, const std::array<double, kSize>& weights,
+                      Eigen::Index column, double* out) {
+    std::array<T, Packs> sums;
+    for (int n = 0; n < Packs; ++n) sums[n] = T(0.0);
+    for (int r = 0; r < kSize; ++r) {
+      for (int n = 0; n < Packs; ++n) {
+        sums[n] += T(weights[r]) * load_anywhere(rows[r] + column + n * kLane);
+      }
+    }
+    for (int n = 0; n < Packs; ++n) store_anywhere(sums[n], out + column + n * kLane);
+  }
+
   static Gradients products(const Stencil& stencil, const Parameters& parameters, const Direction& l) {
     Gradients result;
     for (int c = 0; c < kComponents; ++c) {
@@ -211,15 +237,12 @@ class FamilyOf final : public MeasureFamily {
     return result;
   }
 
-  // block += Σ a_kl g_k h_lᵀ over the components of a term.
+  // Lower triangle of block += Σ a_kl g_k h_lᵀ over the components of a term.
   void add_outer(const Gradients& g, const Gradients& h, int first, const Eigen::VectorXd& a,
                  Hessian& block) const {
     if (a.size() == value_count()) {
       const Values weights = load_values(first, a);
-      for (int c = 0; c < kComponents; ++c) {
-        const Direction scaled = g.col(c) * weights[c];
-        block += scaled.lazyProduct(h.col(c).transpose());
-      }
+      for (int c = 0; c < kComponents; ++c) add_outer_column(g, h.col(c) * weights[c], c, block);
       return;
     }
     for (int c = 0; c < kComponents; ++c) {
@@ -231,24 +254,75 @@ class FamilyOf final : public MeasureFamily {
         }
         scaled += h.col(d) * weight;
       }
-      block += g.col(c).lazyProduct(scaled.transpose());
+      add_outer_column(g, scaled, c, block);
     }
   }
-
-  void add_block(int first, const Hessian& block, SymmetricMatrix& matrix) const {
-    static constexpr int kEntries = kSize * (kSize + 1) / 2;
-    alignas(32) std::array<double, kEntries * kLane> lower;
-    double* to = lower.data();
+  static void add_outer_column(const Gradients& g, const Direction& h, int component, Hessian& block) {
     for (int column = 0; column < kSize; ++column) {
-      for (int row = column; row < kSize; ++row, to += kLane) store_lanes(block(row, column), to);
-    }
-    double* values = matrix.values();
-    for (int k = 0; k < lanes(first); ++k) {
-      const int* slot = slots_.data() + kEntries * (first + k);
-      for (int n = 0; n < kEntries; ++n) values[slot[n]] += lower[static_cast<std::size_t>(kLane * n + k)];
+      for (int row = column; row < kSize; ++row) block(row, column) += g(row, component) * h[column];
     }
   }
 
+  // Adds the lower triangle of the block of every lane to the matrix, one column of a vertex block at a time.
+  void add_block(int first, const Hessian& block, SymmetricMatrix& matrix) const {
+    static constexpr int kPairs = kPoints * (kPoints + 1) / 2;
+    double* values = matrix.values();
+    const int count = lanes(first);
+    std::array<const int*, kLane> column_of;
+    for (int k = 0; k < count; ++k) column_of[k] = columns_.data() + kPairs * kDim * (first + k);
+    int pair = 0;
+    for (int a = 0; a < kPoints; ++a) {
+      for (int b = 0; b <= a; ++b, ++pair) {
+        if (a == b) {
+          for (int j = 0; j < kDim; ++j) {
+            for (int i = j; i < kDim; ++i) {
+              for (int k = 0; k < count; ++k) {
+                values[column_of[k][kDim * pair + j] + i - j] += lane(block(kDim * a + i, kDim * a + j), k);
+              }
+            }
+          }
+          continue;
+        }
+        T turned(0.0);
+        for (int k = 0; k < kLane; ++k) {
+          set_lane(turned, k, turned_[static_cast<std::size_t>(kPairs * term(first, k) + pair)]);
+        }
+        for (int j = 0; j < kDim; ++j) {
+          for (int i = 0; i < kDim; ++i) {
+            const T entry =
+                select(turned, block(kDim * a + j, kDim * b + i), block(kDim * a + i, kDim * b + j));
+            for (int k = 0; k < count; ++k) values[column_of[k][kDim * pair + j] + i] += lane(entry, k);
+          }
+        }
+      }
+    }
+  }
+
+  // `yes` where the flag is not zero.
+  static T select(const T& flag, const T& yes, const T& no) {
+    if constexpr (kLane == 1) {
+      return flag != 0 ? yes : no;
+    } else {
+      T result = no;
+      where(flag != T(0.0), result) = yes;
+      return result;
+    }
+  }
+
+  static T load_anywhere(const double* from) {
+    if constexpr (kLane == 1) {
+      return *from;
+    } else {
+      return T(from, std::experimental::element_aligned);
+    }
+  }
+  static void store_anywhere(const T& value, double* to) {
+    if constexpr (kLane == 1) {
+      *to = value;
+    } else {
+      value.copy_to(to, std::experimental::element_aligned);
+    }
+  }
   static void load_lanes(double& value, const double* from) { value = *from; }
   static void store_lanes(double value, double* to) { *to = value; }
   static void load_lanes(Packet& value, const double* from) {

@@ -44,8 +44,11 @@ void MeasureFamily::reserve(SymmetricPattern& pattern) const {
 
 void MeasureFamily::bind(const SymmetricPattern& pattern) {
   const int n = points_per_term();
-  slots_.clear();
-  for (int i = 0; i < size(); ++i) pattern.append_slots(stencils_[0].data() + n * i, n, slots_);
+  columns_.clear();
+  turned_.clear();
+  for (int i = 0; i < size(); ++i) {
+    pattern.append_columns(stencils_[0].data() + n * i, n, columns_, turned_);
+  }
 }
 
 namespace {

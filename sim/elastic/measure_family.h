@@ -99,7 +99,8 @@ class MeasureFamily {
   Eigen::VectorXd coefficients_;
   std::vector<int> stencils_[2];
   std::vector<double> constants_;
-  std::vector<int> slots_;  // for each term, the places of the lower triangle of its block
+  std::vector<int> columns_;    // for each term and pair of its points, where the block lies in the matrix
+  std::vector<double> turned_;  // and whether it lies there transposed
   std::unique_ptr<Law> law_;
 };
 

@@ -46,4 +46,16 @@ void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<
   }
 }
 
+void SymmetricPattern::append_columns(const int* vertices, int count, std::vector<int>& columns,
+                                      std::vector<double>& turned) const {
+  const int d = dimension_;
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const int row = std::max(vertices[a], vertices[b]), column = std::min(vertices[a], vertices[b]);
+      turned.push_back(vertices[a] < vertices[b] ? 1 : 0);
+      for (int k = 0; k < d; ++k) columns.push_back(slot(d * row + (a == b ? k : 0), d * column + k));
+    }
+  }
+}
+
 }  // namespace vivify::sim

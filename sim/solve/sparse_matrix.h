@@ -26,6 +26,11 @@ class SymmetricPattern {
   int slot(int row, int column) const;
   // Places of the lower triangle of the block of `count` vertices, column by column of it.
   void append_slots(const int* vertices, int count, std::vector<int>& slots) const;
+  // Where the columns of the vertex blocks (a, b), a >= b, of `count` vertices begin: for each pair and
+  // column the place of its first entry (on the diagonal that of the diagonal itself). `turned` has a 1 for
+  // pairs that are stored transposed, because vertex a comes before vertex b in the matrix.
+  void append_columns(const int* vertices, int count, std::vector<int>& columns,
+                      std::vector<double>& turned) const;
 
   // A matrix of zeros with this pattern.
   const Eigen::SparseMatrix<double>& zeros() const { return zeros_; }
