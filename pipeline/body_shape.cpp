@@ -27,18 +27,20 @@ void warn_of_far_points(const std::string& name, const meshing::Embedding& embed
       key);
 }
 
+// Meshed before it is placed: an asset has the same simulation mesh wherever it stands.
 BodyShape make_solid(const Scene& scene, const Value& body) {
   const std::string& name = body["name"].as_string();
   BodyShape shape;
-  shape.surface = read_placed_mesh(scene, body);
+  shape.surface = read_asset(scene, body);
   part_materials(body, shape.surface.part_names);  // wrong part names are told before the long work
   meshing::RepairedSurface repaired = meshing::repair_surface(shape.surface);
   for (const std::string& note : repaired.notes) log_info(name + ": " + note);
-  const meshing::TetrahedralizeResult result =
+  meshing::TetrahedralizeResult result =
       meshing::tetrahedralize(repaired.mesh, meshing::tetrahedra_settings(body["tetrahedra"]));
   for (const std::string& note : result.notes) log_info(name + ": " + note);
   shape.skin.embedding = meshing::embed(result.mesh, shape.surface.V);
   warn_of_far_points(name, shape.skin.embedding, "tetrahedra.vertices");
+  for (Points* V : {&shape.surface.V, &repaired.mesh.V, &result.mesh.V}) place(body, *V);
   shape.mesh = sim_mesh(result.mesh);
   shape.closed = std::move(repaired.mesh);
   shape.route = repaired.route;

@@ -47,15 +47,19 @@ void place(const Value& item, Points2& V) {
   V = (item["scale"].as_number() * V).rowwise() + position;
 }
 
-TriangleMesh read_placed_mesh(const Scene& scene, const Value& item) {
+TriangleMesh read_asset(const Scene& scene, const Value& item) {
   try {
-    TriangleMesh mesh = read_mesh(scene.resolve_path(item["mesh"].as_string()));
-    place(item, mesh.V);
-    return mesh;
+    return read_mesh(scene.resolve_path(item["mesh"].as_string()));
   } catch (const Error& error) {
     throw Error(error.kind(), item["name"].as_string() + ": " + error.what(), error.hint(),
                 item["mesh"].where());
   }
+}
+
+TriangleMesh read_placed_mesh(const Scene& scene, const Value& item) {
+  TriangleMesh mesh = read_asset(scene, item);
+  place(item, mesh.V);
+  return mesh;
 }
 
 std::vector<std::string> part_materials(const Value& item, const std::vector<std::string>& part_names) {

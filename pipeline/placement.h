@@ -22,8 +22,9 @@ void place(const Value& item, Points& V);
 // In the plane there is no heading, and z has no effect.
 void place(const Value& item, Points2& V);
 
-// The mesh of a body, collider or prop, in the world. Throws Error(geometry) for a mesh that cannot be read;
-// the message names the object.
+// The mesh of a body, collider or prop, as in its file or in the world. Throws Error(geometry) for a mesh
+// that cannot be read; the message names the object.
+TriangleMesh read_asset(const Scene& scene, const Value& item);
 TriangleMesh read_placed_mesh(const Scene& scene, const Value& item);
 
 // Material of each part of a mesh, from `looks`; parts that are not named take `all`. A mesh without named
