@@ -5,6 +5,11 @@
 #include <numbers>
 
 namespace vivify::meshing {
+namespace {
+
+constexpr double kMostChords = 1000;  // of one curve
+
+}  // namespace
 
 void CurveContour::line_to(const Eigen::Vector2d& end_point) {
   pieces_.push_back({end(), end_point, end_point, true});
@@ -71,8 +76,8 @@ Points2 CurveContour::flatten(double tolerance) const {
     if (!piece.straight) {
       // A chord over a parameter step h is off by at most h²/8 times the largest second derivative.
       const double bend = 6 * std::max((a - 2 * b + c).norm(), (b - 2 * c + d).norm());
-      count = static_cast<int>(std::ceil(std::sqrt(bend / 8 / tolerance)));
-      count = std::clamp(count, 1, 1000);
+      const double chords = std::sqrt(bend / 8 / tolerance);
+      if (chords > 1) count = static_cast<int>(std::ceil(std::min(chords, kMostChords)));
     }
     for (int i = 1; i < count; ++i) {
       const double t = static_cast<double>(i) / count, u = 1 - t;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -130,7 +131,12 @@ TriangleMesh extrude(const Outline& outline, double depth, double bevel) {
   }
 
   const double size = std::max(depth / 2, std::sqrt(4 * outline.area() / kMostTriangles));
-  PlaneTriangles front = *refine_plane(loops, {.longest_edge = size});
+  std::optional<PlaneTriangles> refined = refine_plane(loops, {.longest_edge = size});
+  if (!refined) {
+    throw Error(ErrorKind::geometry, "the front of the letter takes too many triangles",
+                "simplify the outline");
+  }
+  PlaneTriangles& front = *refined;
   improve_triangles(front.V, front.F, 3);
   const std::vector<std::vector<RimPoint>> rims = rims_of(front, loops);
   const std::vector<std::pair<double, double>> rings = profile(depth, bevel, size);

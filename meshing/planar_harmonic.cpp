@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,7 +69,12 @@ PlaneTriangles mesh_cage(const Points2& cage, const Points2& points, int unknown
     edges.row(static_cast<Eigen::Index>(s)) << segments[s].first, segments[s].second;
   }
   const double longest = std::sqrt(kSquaredEdgePerUnknown * signed_area(cage) / unknowns);
-  return *refine_plane(all, edges, {.longest_edge = longest});
+  std::optional<PlaneTriangles> mesh = refine_plane(all, edges, {.longest_edge = longest});
+  if (!mesh) {
+    throw Error(ErrorKind::geometry, "a mesh of the cage takes too many triangles",
+                "move apart what nearly touches: points, or points and the cage");
+  }
+  return std::move(*mesh);
 }
 
 // Hat functions of the cage vertices at the nodes on the cage (#B by #C).

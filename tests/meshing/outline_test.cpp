@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "common/rng.h"
 #include "meshing/glyph.h"
 #include "meshing/svg.h"
 #include "tests/common/temporary_folder.h"
@@ -122,6 +123,29 @@ TEST(SvgPath, ErrorsNameThePosition) {
   EXPECT_THAT(message("M0 0zz 5"), HasSubstr("a command is missing at character 8"));
   EXPECT_THAT(message("M0 0 a1 1 0 2 0 3 3"), HasSubstr("a flag (0 or 1) is missing at character 13"));
   EXPECT_THAT(message("M0 0 L1e999 0"), HasSubstr("a number is missing"));
+}
+
+// Random path data gives contours or an Error(geometry), never anything else.
+TEST(SvgPath, AnyTextIsReadOrRejected) {
+  static constexpr std::string_view kLetters = "MmLlHhVvCcSsQqTtAaZz0123456789.-+e, #X";
+  CounterRng rng(17);
+  int read = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::string data = trial % 2 == 0 ? "M0 0" : "";
+    const double length = rng.uniform(0, 30);
+    while (static_cast<double>(data.size()) < length) {
+      data += kLetters[static_cast<std::size_t>(rng.uniform(0, static_cast<double>(kLetters.size())))];
+    }
+    try {
+      for (const CurveContour& contour : svg_path_contours(data)) {
+        EXPECT_GE(contour.flatten(1e-3).rows(), 1);
+      }
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::geometry) << data;
+    }
+  }
+  EXPECT_GT(read, 100);
 }
 
 class Svg : public ::testing::Test {
