@@ -249,7 +249,7 @@ int main(int argc, char** argv) {
   const std::vector<Mesh> meshes = {
       rod(32),      rod(71),      rod(500),      grid(4, 9),      grid(6, 13),    grid(9, 9),   grid(12, 40),
       grid(30, 50), shell(5, 5),  shell(8, 8),   shell(16, 20),   box(2, 2, 3),   box(3, 3, 4), box(4, 4, 4),
-      cross(3, 4),  box(6, 6, 7), box(7, 7, 12), box(10, 10, 11), box(10, 14, 20)};
+      cross(3, 3),  box(6, 6, 7), box(7, 7, 12), box(10, 10, 11), box(10, 14, 20)};
   for (const Mesh& mesh : meshes) {
     if (argc < 2 || mesh.name.find(argv[1]) != std::string::npos) run(mesh);
   }
