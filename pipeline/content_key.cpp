@@ -1,11 +1,58 @@
 #include "pipeline/content_key.h"
 
+#include <charconv>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
 
 #include "common/file.h"
 #include "pipeline/version.h"
 
 namespace vivify::pipeline {
+namespace {
+
+// Names as they stand in a URI: %20 is a space.
+std::string decoded(const std::string& uri) {
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    const char* const digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
+      name += static_cast<char>(code);
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return name;
+}
+
+// Files that a mesh file refers to, as it names them.
+std::vector<std::string> companions(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  const std::string ending = path.extension().string();
+  if (ending == ".gltf") {
+    const nlohmann::json json = nlohmann::json::parse(read_text_file(path), nullptr, false);
+    if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return names;
+    for (const nlohmann::json& buffer : json["buffers"]) {
+      if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+      const std::string uri = buffer["uri"];
+      if (!uri.starts_with("data:")) names.push_back(decoded(uri));
+    }
+  } else if (ending == ".obj") {
+    std::istringstream lines(read_text_file(path));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("mtllib ")) continue;
+      const std::size_t first = line.find_first_not_of(" \t", 7), last = line.find_last_not_of(" \t\r");
+      if (first != line.npos) names.push_back(line.substr(first, last + 1 - first));
+    }
+  }
+  return names;
+}
+
+}  // namespace
 
 ContentKey::ContentKey(const std::string& module) { hasher_.add(source_revision(module)); }
 
@@ -28,6 +75,17 @@ ContentKey& ContentKey::add_file(const std::filesystem::path& path) {
   auto found = known.find(path);
   if (found == known.end()) found = known.emplace(path, hash_hex(read_file(path))).first;
   hasher_.add("file").add(found->second);
+  return *this;
+}
+
+ContentKey& ContentKey::add_mesh_file(const std::filesystem::path& path) {
+  add_file(path);
+  for (const std::string& name : companions(path)) {
+    const std::filesystem::path companion = path.parent_path() / name;
+    std::error_code ignored;
+    add("companion", name);
+    if (std::filesystem::is_regular_file(companion, ignored)) add_file(companion);
+  }
   return *this;
 }
 

@@ -20,6 +20,9 @@ class ContentKey {
   ContentKey& add(const std::string& name, long number);
   // The content of a file. Throws Error(io).
   ContentKey& add_file(const std::filesystem::path& path);
+  // The content of a mesh file and of the files that it refers to (buffers of a glTF, materials of an OBJ).
+  // Throws Error(io).
+  ContentKey& add_mesh_file(const std::filesystem::path& path);
 
   std::string hex() const { return hasher_.hex(); }
 

@@ -57,6 +57,19 @@ std::vector<int> all_frames(int last) {
   return frames;
 }
 
+std::string frames_text(const std::vector<int>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    if (!text.empty()) text += ",";
+    text += std::to_string(frames[i]);
+    if (last > i) text += "-" + std::to_string(frames[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
 std::string frame_text(int frame) {
   const std::string digits = std::to_string(frame);
   return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;

@@ -14,6 +14,9 @@ std::vector<int> parse_frames(const std::string& text, int last);
 // Frames 1 … last.
 std::vector<int> all_frames(int last);
 
+// Ascending frames in the shortest such text without steps: "1-100,107".
+std::string frames_text(const std::vector<int>& frames);
+
 // A frame number as it stands in file names: four digits or more.
 std::string frame_text(int frame);
 

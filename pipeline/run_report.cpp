@@ -37,8 +37,30 @@ void write_run_json(const std::filesystem::path& out, const std::vector<StageRep
   for (const StageReport& stage : stages) {
     json["stages"][stage.name] = {
         {"key", stage.key}, {"status", stage.status}, {"files", stage.products}, {"made", stage.made}};
+    if (!stage.frames.empty()) json["stages"][stage.name]["frames"] = stage.frames;
   }
   write_if_changed(out / "run.json", json.dump(2) + "\n");
+}
+
+std::vector<StageReport> read_run_json(const std::filesystem::path& out) {
+  const Json json = read_object(out / "run.json");
+  std::vector<StageReport> stages;
+  if (!json.contains("stages") || !json["stages"].is_object()) return stages;
+  for (const auto& [name, entry] : json["stages"].items()) {
+    try {
+      StageReport stage;
+      stage.name = name;
+      stage.key = entry.at("key");
+      stage.status = entry.at("status");
+      stage.products = entry.at("files");
+      stage.made = entry.at("made");
+      stage.frames = entry.value("frames", "");
+      stages.push_back(std::move(stage));
+    } catch (const nlohmann::json::exception&) {
+      continue;  // of another version
+    }
+  }
+  return stages;
 }
 
 void update_timing(const std::filesystem::path& out, const StageReport& stage) {

@@ -17,6 +17,7 @@ struct StageReport {
   double peak_mb = 0;
   std::size_t products = 0;
   std::size_t made = 0;  // products made in this run
+  std::string frames;    // that its pictures show ("1-96"); empty for stages without pictures
 };
 
 // Writes a text file, atomically, unless it holds this text already.
@@ -24,6 +25,8 @@ void write_if_changed(const std::filesystem::path& path, const std::string& text
 
 // Writes run.json: version, libraries, processor, and for each stage key and status.
 void write_run_json(const std::filesystem::path& out, const std::vector<StageReport>& stages);
+// The stages that run.json tells of; none when it is missing or damaged. Times are not in there.
+std::vector<StageReport> read_run_json(const std::filesystem::path& out);
 
 // Renews the times of a stage that did work in timing.json; the times of other stages stay as they were
 // measured when they last ran.

@@ -13,6 +13,7 @@
 #include "common/hash.h"
 #include "common/log.h"
 #include "common/stop.h"
+#include "pipeline/frame_range.h"
 #include "pipeline/peak_memory.h"
 
 namespace vivify::pipeline {
@@ -79,6 +80,21 @@ long units(const std::vector<Product>& products) {
   return sum;
 }
 
+// What run.json tells already of the stages that do not run now, where it still holds for this job.
+std::vector<StageReport> later_reports(const Job& job, const std::string& last) {
+  std::vector<StageReport> later;
+  const std::vector<StageReport> known = read_run_json(job.out);
+  bool after = false;
+  for (const Stage& stage : stages()) {
+    for (const StageReport& report : known) {
+      if (after && report.name == stage.name && report.key == stage_key(stage.products(job)))
+        later.push_back(report);
+    }
+    after = after || stage.name == last;
+  }
+  return later;
+}
+
 std::span<const Stage> stages_up_to(const std::string& last) {
   for (std::size_t i = 0; i < stages().size(); ++i) {
     if (stages()[i].name == last) return stages().first(i + 1);
@@ -104,6 +120,12 @@ std::vector<StageReport> run(const Job& job, const RunOptions& options, Progress
   write_if_changed(job.out / "scene.resolved.yaml", job.scene.resolved);
 
   std::vector<StageReport> reports;
+  const std::vector<StageReport> later = later_reports(job, options.last_stage);
+  const auto write_report = [&] {
+    std::vector<StageReport> all = reports;
+    all.insert(all.end(), later.begin(), later.end());
+    write_run_json(job.out, all);
+  };
   for (const Stage& stage : stages_up_to(options.last_stage)) {
     check_stop();
     Ledger ledger(job.out, stage.name);
@@ -113,6 +135,7 @@ std::vector<StageReport> run(const Job& job, const RunOptions& options, Progress
     report.key = stage_key(todo.products);
     report.products = todo.products.size();
     report.made = todo.missing.size();
+    if (stage.shows_frames) report.frames = frames_text(job.frames);
     report.status = report.made == 0 ? "cached" : report.made == report.products ? "ran" : "resumed";
     if (report.made > 0) {
       // A file that is about to be made again counts as missing from now on, whatever happens to this
@@ -140,9 +163,9 @@ std::vector<StageReport> run(const Job& job, const RunOptions& options, Progress
                   ? ", " + std::to_string(report.made) + " of " + std::to_string(report.products) + " files"
                   : ""));
     reports.push_back(report);
-    if (report.made > 0) write_run_json(job.out, reports);
+    if (report.made > 0) write_report();
   }
-  write_run_json(job.out, reports);
+  write_report();
   return reports;
 }
 

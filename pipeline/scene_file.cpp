@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 #include "common/config.h"
@@ -20,6 +21,7 @@
 namespace vivify::pipeline {
 namespace {
 
+constexpr double kLeastPlanarShare = 0.5;  // of a heading that a body of the plane follows
 constexpr double kMostFrames = 1'000'000;
 
 Schema video_schema() {
@@ -268,6 +270,14 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const std::string& text : sim::model_warnings(bodies[i]["model"])) {
       warnings.push_back({bodies[i]["model"].where(), "bodies[" + std::to_string(i) + "]." + text});
+    }
+    const Value& heading = bodies[i]["controller"]["heading_deg"];
+    if (!is_planar(body_kind(bodies[i])) || heading.is_null()) continue;
+    const double along_x = std::sin(heading.as_number() * std::numbers::pi / 180);
+    if (std::abs(along_x) < kLeastPlanarShare) {
+      warnings.push_back({heading.where(), "bodies[" + std::to_string(i) +
+                                               "].controller.heading_deg leads out of the plane, where the "
+                                               "body cannot go: 90 is right, -90 left"});
     }
   }
   return warnings;

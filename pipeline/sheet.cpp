@@ -7,10 +7,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 
+#include "common/config.h"
 #include "common/error.h"
 #include "common/log.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/run_report.h"
 #include "render/image_io.h"
 #include "render/view_transform.h"
 
@@ -39,6 +44,21 @@ std::string frame_label(const fs::path& file) {
   return stem.substr(stem.rfind('.') + 1);
 }
 
+// The frames that the last rendering of a run folder was asked for.
+std::optional<std::vector<int>> asked_frames(const fs::path& folder) {
+  for (const StageReport& stage : read_run_json(folder)) {
+    if (stage.name == "render" && !stage.frames.empty()) {
+      return parse_frames(stage.frames, std::numeric_limits<int>::max());
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_asked_for(const fs::path& file, const std::optional<std::vector<int>>& asked) {
+  return !asked ||
+         std::ranges::any_of(*asked, [&](int frame) { return frame_text(frame) == frame_label(file); });
+}
+
 OIIO::ImageBuf picture(const fs::path& file, const render::ViewTransform& view, int width, int height) {
   const render::RgbImage frame = render::read_rgb(file);
   std::vector<std::uint8_t> pixels = view.pixels(frame.values);
@@ -61,11 +81,13 @@ bool draw_label(OIIO::ImageBuf& sheet, const std::string& label, int x, int y, i
 std::vector<fs::path> list_frames(const fs::path& folder) {
   std::error_code error;
   const fs::path frames = fs::is_directory(folder / "render", error) ? folder / "render" : folder;
+  const std::optional<std::vector<int>> asked = asked_frames(folder);
   std::vector<fs::path> files;
   fs::directory_iterator entries(frames, error);
   if (error) throw Error(ErrorKind::io, "cannot read folder " + frames.string() + ": " + error.message());
   for (const fs::directory_entry& entry : entries) {
-    if (entry.path().extension() == ".exr") files.push_back(entry.path());
+    if (entry.path().extension() == ".exr" && is_asked_for(entry.path(), asked))
+      files.push_back(entry.path());
   }
   if (files.empty()) {
     throw Error(ErrorKind::io, "there are no frames (*.exr) in " + frames.string(),
@@ -73,6 +95,21 @@ std::vector<fs::path> list_frames(const fs::path& folder) {
   }
   std::ranges::sort(files);
   return files;
+}
+
+double exposure_of(const fs::path& folder) {
+  const fs::path scene = folder / "scene.resolved.yaml";
+  std::error_code ignored;
+  if (!fs::is_regular_file(scene, ignored)) return 0;
+  std::vector<Error> errors;
+  const ConfigNode root = parse_yaml(read_text_file(scene), scene.string(), errors);
+  for (const ConfigNode::Entry& video : root.entries) {
+    if (video.key != "video") continue;
+    for (const ConfigNode::Entry& entry : video.value.entries) {
+      if (entry.key == "exposure_stops") return std::stod(entry.value.scalar);
+    }
+  }
+  return 0;
 }
 
 Bytes contact_sheet(const fs::path& folder, const SheetSettings& settings) {

@@ -15,9 +15,13 @@ struct SheetSettings {
   double exposure_stops = 0;  // of the view transform
 };
 
-// The EXR files of a run folder (its `render` folder) or of a folder of frames, in order of their names.
+// The EXR files of a run folder (of its `render` folder those that its last rendering was asked for) or of a
+// folder of frames, in order of their names.
 // Throws Error(io) when the folder cannot be read or holds none.
 std::vector<std::filesystem::path> list_frames(const std::filesystem::path& folder);
+
+// The exposure that the scene of a run folder asks for; 0 for other folders.
+double exposure_of(const std::filesystem::path& folder);
 
 // The sheet as a PNG file: frames through the sRGB view transform, row by row, each with its number. The same
 // frames give the same bytes. Throws Error(usage) for settings that leave no room for a picture and Error(io)

@@ -38,6 +38,7 @@ struct Stage {
   // Makes `missing` (a part of the products, in order), commits each to the ledger, and advances `progress`
   // by the units of each.
   void (*make)(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress);
+  bool shows_frames = false;  // its files show the frames of the job
 };
 
 // Every stage, in order: mesh, weights, simulate, render, encode.

@@ -71,7 +71,7 @@ std::string mesh_key(const Job& job, const Value& body) {
                            "triangles", "edges", "model"}) {
     key.add(part, body[part]);
   }
-  for (const std::filesystem::path& file : shape_files(job.scene, body)) key.add_file(file);
+  for (const std::filesystem::path& file : shape_files(job.scene, body)) key.add_mesh_file(file);
   return key.hex();
 }
 

@@ -58,7 +58,7 @@ std::string looks_key(const Job& job) {
   for (const Value& body : scene.settings["bodies"].items()) key.add("looks", body["looks"]);
   for (const Value& object : fixed_objects(scene)) {
     for (const char* part : {"position", "scale", "heading_deg", "looks"}) key.add(part, object[part]);
-    key.add_file(scene.resolve_path(object["mesh"].as_string()));
+    key.add_mesh_file(scene.resolve_path(object["mesh"].as_string()));
   }
   for (const std::filesystem::path& file : render::referenced_files(make_looks(scene))) key.add_file(file);
   return key.hex();
@@ -189,6 +189,6 @@ std::string picture_file(const Scene& scene, int frame) {
   return "render/" + scene.name + "." + frame_text(frame) + ".exr";
 }
 
-Stage render_stage() { return {"render", "Everything up to the pictures (EXR)", products, make}; }
+Stage render_stage() { return {"render", "Everything up to the pictures (EXR)", products, make, true}; }
 
 }  // namespace vivify::pipeline

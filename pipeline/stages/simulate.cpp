@@ -268,7 +268,7 @@ std::string simulation_key(const Job& job) {
   for (const Value& collider : scene.settings["colliders"].items()) {
     for (const char* part : {"name", "position", "scale", "heading_deg", "friction"})
       key.add(part, collider[part]);
-    key.add_file(scene.resolve_path(collider["mesh"].as_string()));
+    key.add_mesh_file(scene.resolve_path(collider["mesh"].as_string()));
   }
   return key.hex();
 }

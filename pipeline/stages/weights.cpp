@@ -134,10 +134,10 @@ std::string weights_key(const Job& job, const Value& body) {
   ContentKey key("meshing");
   const Value& space = body["rest_space"];
   key.add("mesh", mesh_key(job, body)).add("rest_space", space);
-  if (space.has("file")) key.add_file(job.scene.resolve_path(space["file"].as_string()));
+  if (space.has("file")) key.add_mesh_file(job.scene.resolve_path(space["file"].as_string()));
   for (const Value& example : examples_of(body)) {
     if (example.has("file")) {
-      key.add_file(job.scene.resolve_path(example["file"].as_string()));
+      key.add_mesh_file(job.scene.resolve_path(example["file"].as_string()));
     } else {
       key.add("sim", source_revision("sim")).add("gravity", job.scene.settings["gravity"]);
       key.add_file(job.scene.resolve_path(example["pose"].as_string()));

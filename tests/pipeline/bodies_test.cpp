@@ -401,6 +401,14 @@ TEST(Check, WarnsOfMaterialsWithoutFailing) {
   EXPECT_THAT(outcome.err, HasSubstr("warning: bodies[0].model: volume_stiffness is below"));
 }
 
+TEST(Check, WarnsOfHeadingsOutOfThePlane) {
+  const BodyScene scene({kLetter, "model: {type: solid2d}", "controller: {type: hop}"});
+  const Outcome outcome = vivify({"check", scene.file().string()});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:7:"));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: bodies[0].controller.heading_deg leads out of the plane"));
+}
+
 TEST(Check, TriesCameraAndLights) {
   const BodyScene scene({"mesh: box.obj"});
   std::string text = read_text_file(scene.file());

@@ -98,6 +98,27 @@ TEST(Docs, SmallestSceneRuns) {
   EXPECT_GT(fs::file_size(clone / "out/small/small.mp4"), 500u);
 }
 
+// Scenes without their first line, and files beside them that begin with their name.
+TEST(Docs, ScenesOfTheGuideAreRight) {
+  const TemporaryFolder clone;
+  make_clone(clone);
+  ProgramOptions options;
+  options.folder = clone.path();
+  int scenes = 0;
+  for (const std::string& block : fenced_blocks(kSource / "docs/user_guide.md", "yaml")) {
+    if (block.starts_with("# ")) {
+      write_file_atomic(clone / "configs" / block.substr(2, block.find('\n') - 2), block);
+      continue;
+    }
+    write_file_atomic(clone / "configs/guide.yaml", "version: 1\n" + block);
+    const Outcome outcome = vivify({"check", "configs/guide.yaml"}, options);
+    EXPECT_EQ(outcome.code, 0) << block << outcome.err;
+    EXPECT_EQ(outcome.err, "") << block;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 2);
+}
+
 TEST(Docs, LinksLeadSomewhere) {
   const std::regex link(R"(\]\(([^)#]+)\))");
   for (const char* file : {"README.md", "CHANGELOG.md", "docs/user_guide.md", "docs/reference.md"}) {

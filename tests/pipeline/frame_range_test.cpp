@@ -48,5 +48,15 @@ TEST(FrameRange, WritesFourDigits) {
   EXPECT_EQ(frame_text(12345), "12345");
 }
 
+TEST(FramesText, IsReadBackAsTheSameFrames) {
+  EXPECT_EQ(frames_text({}), "");
+  EXPECT_EQ(frames_text({7}), "7");
+  EXPECT_EQ(frames_text({1, 2, 3, 5, 7, 8}), "1-3,5,7-8");
+  for (const char* text : {"1-100", "1-9x2,30-31", "5"}) {
+    const std::vector<int> frames = parse_frames(text, 100);
+    EXPECT_EQ(parse_frames(frames_text(frames), 100), frames) << text;
+  }
+}
+
 }  // namespace
 }  // namespace vivify::pipeline

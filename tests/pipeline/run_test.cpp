@@ -20,7 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing_support::ball_mesh;
 using testing_support::files_below;
+using testing_support::obj_text;
 using testing_support::Outcome;
 using testing_support::ProgramOptions;
 using testing_support::TinyScene;
@@ -153,6 +155,54 @@ TEST(Run, SecondRunDoesNothing) {
   EXPECT_EQ(statuses(scene.out()), kAllCached);
   EXPECT_EQ(times_below(scene.out() / "render"), before);
   EXPECT_EQ(fs::last_write_time(scene.out() / "tiny.mp4"), video);
+}
+
+TEST(Run, EarlierStagesKeepWhatIsKnownOfLaterOnes) {
+  TinyScene scene;
+  ASSERT_EQ(run(scene, scene.out()).code, 0);
+  ASSERT_EQ(run(scene, scene.out(), {}, {}, "mesh").code, 0);
+  std::map<std::string, std::string> expected = {
+      {"mesh", "cached"}, {"weights", "ran"}, {"simulate", "ran"}, {"render", "ran"}, {"encode", "ran"}};
+  EXPECT_EQ(statuses(scene.out()), expected);
+  // What does not hold any more is not told.
+  scene.change("position: [0, 1, 4]", "position: [0, 1.5, 5]");
+  ASSERT_EQ(run(scene, scene.out(), {}, {}, "mesh").code, 0);
+  expected.erase("render");
+  expected.erase("encode");
+  expected["simulate"] = "ran";
+  EXPECT_EQ(statuses(scene.out()), expected);
+}
+
+TEST(Run, FilesBehindAMeshFileCount) {
+  const TinyScene scene;
+  const std::string ball = obj_text(ball_mesh(0.5, 2));
+  scene.write("ball.obj", "mtllib clay of mine.mtl\n" + ball);
+  ASSERT_EQ(run(scene, scene.out(), {}, {}, "mesh").code, 0);
+  ASSERT_EQ(run(scene, scene.out(), {}, {}, "mesh").code, 0);
+  EXPECT_EQ(statuses(scene.out()).at("mesh"), "cached");
+  scene.write("clay of mine.mtl", "newmtl clay\n");
+  ASSERT_EQ(run(scene, scene.out(), {}, {}, "mesh").code, 0);
+  EXPECT_EQ(statuses(scene.out()).at("mesh"), "ran");
+}
+
+TEST(Run, SheetShowsTheFramesOfTheLastRun) {
+  const TinyScene scene;
+  ASSERT_EQ(run(scene, scene.out()).code, 0);
+  const auto sheet = [&] {
+    const Outcome outcome = vivify({"sheet", scene.out().string(), "--columns", "6", "--width", "600"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read_text_file(scene.out() / "sheet.png");
+  };
+  const std::string all = sheet();
+  ASSERT_EQ(run(scene, scene.out(), {"--frames", "2-3"}).code, 0);
+  EXPECT_EQ(read_json(scene.out() / "run.json").at("stages").at("render").at("frames"), "2-3");
+  const std::string two = sheet();
+  EXPECT_NE(two, all);
+  for (const char* file : {"tiny.0001.exr", "tiny.0004.exr", "tiny.0005.exr", "tiny.0006.exr"})
+    EXPECT_TRUE(fs::remove(scene.out() / "render" / file));
+  EXPECT_EQ(sheet(), two);
+  ASSERT_EQ(run(scene, scene.out(), {"--frames", "2-3", "--set", "video.exposure_stops=1"}).code, 0);
+  EXPECT_NE(sheet(), two);
 }
 
 TEST(Run, CameraDoesNotSimulateAgain) {
