@@ -1,0 +1,87 @@
+// configs/figure3_*.yaml as they are shipped: the letter I hops left with each of the four rest spaces, by
+// the laws of physics, in four different ways.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/file.h"
+#include "common/hdf5_file.h"
+#include "tests/common/temporary_folder.h"
+#include "tests/pipeline/program.h"
+#include "tests/pipeline/simulated_run.h"
+
+namespace vivify::pipeline {
+namespace {
+
+using testing_support::Flight;
+using testing_support::Steps;
+
+constexpr double kHeight = 1;
+constexpr int kFrames = 72;
+
+// Positions of the vertices about their mean in every frame.
+std::vector<RowMatrixXd> poses(const std::filesystem::path& out) {
+  std::vector<RowMatrixXd> poses;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    const std::string number = std::to_string(10000 + frame).substr(1);
+    RowMatrixXd x = Hdf5Reader(out / ("sim/frames/" + number + ".h5")).matrix("/bodies/letter/x");
+    x.rowwise() -= x.colwise().mean().eval();
+    poses.push_back(std::move(x));
+  }
+  return poses;
+}
+
+TEST(Figure3, TheLetterHopsLeftInFourStyles) {
+  const testing_support::TemporaryFolder folder;
+  const std::vector<std::string> styles = {"full", "cage", "bent", "compressed"};
+  std::vector<std::vector<RowMatrixXd>> motions;
+  for (const std::string& style : styles) {
+    SCOPED_TRACE(style);
+    const std::filesystem::path out = folder / style;
+    const testing_support::Outcome outcome =
+        testing_support::vivify({"simulate", VIVIFY_SOURCE_DIR "/configs/figure3_" + style + ".yaml", "-o",
+                                 out.string(), "--progress=none", "-q"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto summary = nlohmann::json::parse(read_text_file(out / "sim/summary.json"));
+    EXPECT_EQ(summary["frames"], kFrames);
+    const int dofs = summary["bodies"]["letter"]["dofs"];
+    EXPECT_GE(dofs, 54);
+    EXPECT_LE(dofs, 130);
+
+    const Steps steps(out / "sim/steps.csv");
+    const double h = summary["h_s"];
+    std::size_t left = 0;
+    for (const Flight& flight : testing_support::flights(steps, h)) {
+      if (flight.clearance < 0.05 * kHeight) continue;
+      EXPECT_GE(flight.duration, 0.12);
+      left += steps("com_x_m", flight.last) < steps("com_x_m", flight.first) - 0.02 * kHeight;
+      for (std::size_t i = flight.first; i <= flight.last; ++i) {
+        const double n = static_cast<double>(i - flight.first);
+        const double fall =
+            steps("com_y_m", i) - steps("com_y_m", flight.first) - n * h * steps("vel_y_m_s", flight.first);
+        EXPECT_NEAR(fall, -9.81 * h * h * n * (n + 1) / 2, 1e-8);
+      }
+    }
+    EXPECT_GE(left, 2u);
+    EXPECT_LE(steps.largest("residual_rel"), 1e-8);
+    EXPECT_LE(steps.largest("max_penetration_m"), 0.02 * kHeight);
+    EXPECT_LE(steps.largest("tilt_deg"), 60);  // it has no goal that keeps it upright, and does not fall
+    motions.push_back(poses(out));
+  }
+  for (std::size_t a = 0; a < motions.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      double sum = 0;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        sum += (motions[a][static_cast<std::size_t>(frame)] - motions[b][static_cast<std::size_t>(frame)])
+                   .rowwise()
+                   .squaredNorm()
+                   .mean();
+      }
+      EXPECT_GE(std::sqrt(sum / kFrames), 0.05 * kHeight) << styles[a] << " against " << styles[b];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vivify::pipeline
