@@ -47,13 +47,17 @@ double regularizer_share(const MeasureFamily& family, const Value& regularizer) 
 }  // namespace
 
 BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings) {
+  return make_body_model(input, settings, model_entry(input.model), rest_space_entry(input.rest_space));
+}
+
+BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings, const ModelEntry& model,
+                          const RestSpaceEntry& space) {
   BodyModel body;
   body.name = input.name;
   body.mesh = input.rest;
   const int d = body.dimension();
   const RowMatrixXd& V = body.mesh.V;
-  const RestSpaceEntry& space = rest_space_entry(input.rest_space);
-  ElasticModel elastic = build_model(body.mesh, space.layout, input.model);
+  ElasticModel elastic = build_model(model, body.mesh, space.layout, input.model);
   body.elastic = std::move(elastic.families);
   body.mass = std::move(elastic.mass);
   body.damping = input.model["damping_s"].as_number();

@@ -32,9 +32,11 @@ struct WorldSettings {
   bool statics = false;  // every step is the equilibrium of its rest shape: no motion, gravity or contact
 };
 
-// Throws Error(geometry) or Error(usage) when the input cannot be simulated.
-
+// Throws Error(geometry) or Error(usage) when the input cannot be simulated. The second form takes the model
+// and the rest space themselves instead of looking up their names.
 BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings);
+BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings, const ModelEntry& model,
+                          const RestSpaceEntry& space);
 
 class Body {
  public:

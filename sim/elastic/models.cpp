@@ -62,10 +62,10 @@ const ModelEntry& model_entry(const Value& model) {
   return find_entry(elastic_models(), model["type"].as_string(), "elastic model");
 }
 
-Schema model_schema() {
+Schema model_schema(std::span<const ModelEntry> models) {
   Schema schema =
-      variant("Elastic model and material of a body.", "type").initially(kModels.front().name.data());
-  for (const ModelEntry& entry : kModels) {
+      variant("Elastic model and material of a body.", "type").initially(models.front().name.data());
+  for (const ModelEntry& entry : models) {
     schema = std::move(schema).option(
         std::string(entry.name),
         entry.material_schema()
@@ -84,7 +84,11 @@ Schema model_schema() {
 }
 
 ElasticModel build_model(const SimMesh& reference, RestLayout layout, const Value& model) {
-  const ModelEntry& entry = model_entry(model);
+  return build_model(model_entry(model), reference, layout, model);
+}
+
+ElasticModel build_model(const ModelEntry& entry, const SimMesh& reference, RestLayout layout,
+                         const Value& model) {
   const auto kind = [](int points) {
     return points == 2 ? "edges" : points == 3 ? "triangles" : "tetrahedra";
   };

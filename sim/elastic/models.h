@@ -60,12 +60,14 @@ struct ModelEntry {
 std::span<const ModelEntry> elastic_models();
 const ModelEntry& model_entry(const Value& model);
 
-// The setting `model` of a body: the model, its density and its material.
-Schema model_schema();
+// The setting `model` of a body: the model (one of `models`), its density and its material.
+Schema model_schema(std::span<const ModelEntry> models = elastic_models());
 
 // The elastic model that `model` (resolved with model_schema) names. Throws Error(geometry) for a mesh of
 // another kind or with degenerate elements.
 ElasticModel build_model(const SimMesh& reference, RestLayout layout, const Value& model);
+ElasticModel build_model(const ModelEntry& entry, const SimMesh& reference, RestLayout layout,
+                         const Value& model);
 
 // Warnings about the material and its regions, such as ratios that let an element stay inverted.
 std::vector<std::string> model_warnings(const Value& model);

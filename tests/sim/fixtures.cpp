@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
+#include <numbers>
 #include <set>
 
 #include "sim/settings.h"
@@ -49,86 +50,197 @@ TetMesh box_mesh(const Eigen::Vector3i& cells, const Eigen::Vector3d& size, cons
   return mesh;
 }
 
-Matrix trilinear_weights(const Points& V) {
-  const Box box = bounding_box(V);
-  const Eigen::Vector3d margin = 0.1 * (box.max - box.min), low = box.min - margin,
-                        size = box.max + margin - low;
-  Matrix weights(V.rows(), 8);
+namespace {
+
+RowMatrixXi index_rows(const std::vector<std::vector<int>>& rows_of) {
+  RowMatrixXi E(static_cast<Eigen::Index>(rows_of.size()), static_cast<Eigen::Index>(rows_of.front().size()));
+  for (Eigen::Index e = 0; e < E.rows(); ++e) {
+    for (Eigen::Index k = 0; k < E.cols(); ++k) {
+      E(e, k) = rows_of[static_cast<std::size_t>(e)][static_cast<std::size_t>(k)];
+    }
+  }
+  return E;
+}
+
+NamedMesh rod(bool closed) {
+  const int n = 7;
+  NamedMesh rod{closed ? "ring" : "rod", {RowMatrixXd(n, 2), {}}};
+  std::vector<std::vector<int>> edges;
+  for (int i = 0; i < n; ++i) {
+    const double t = closed ? 2 * std::numbers::pi * (i + 0.5 - n / 4.0) / n : i / (n - 1.0);
+    if (closed) {
+      rod.mesh.V.row(i) << 0.25 * std::cos(t), 0.25 + 0.25 * std::sin(t);
+    } else {
+      rod.mesh.V.row(i) << 0.6 * t - 0.3, 0.5 * std::pow(t - 0.3, 2);
+    }
+    if (closed || i + 1 < n) edges.push_back({i, (i + 1) % n});
+  }
+  rod.mesh.E = index_rows(edges);
+  return rod;
+}
+
+// Three by three vertices over the unit square, with diagonals of either kind.
+RowMatrixXi patch_triangles() {
+  std::vector<std::vector<int>> triangles;
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      const int a = i + 3 * j, b = a + 1, c = a + 4, d = a + 3;
+      if ((i + j) % 2 == 0) {
+        triangles.push_back({a, b, c});
+        triangles.push_back({a, c, d});
+      } else {
+        triangles.push_back({a, b, d});
+        triangles.push_back({b, c, d});
+      }
+    }
+  }
+  return index_rows(triangles);
+}
+
+NamedMesh patch(int dimension) {
+  NamedMesh patch{dimension == 2 ? "patch" : "arch", {RowMatrixXd(9, dimension), patch_triangles()}};
+  for (int i = 0; i < 9; ++i) {
+    const double u = 0.5 * (i % 3), v = 0.5 * (i / 3);  // NOLINT(bugprone-integer-division)
+    if (dimension == 2) {
+      patch.mesh.V.row(i) << 0.5 * u - 0.25, 0.5 * v;
+    } else {
+      patch.mesh.V.row(i) << 0.6 * u - 0.3, 1.2 * u * (1 - u) + 0.2 * u * v * v, 0.25 - 0.5 * v;
+    }
+  }
+  return patch;
+}
+
+NamedMesh closed_shell() {
+  return {
+      "box",
+      {(RowMatrixXd(8, 3) << -1, 0, -1, 1, 0, -1, -1, 2, -1, 1, 2, -1, -1, 0, 1, 1, 0, 1, -1, 2, 1, 1, 2, 1)
+               .finished() *
+           0.22,
+       index_rows({{0, 2, 3},
+                   {0, 3, 1},
+                   {4, 5, 7},
+                   {4, 7, 6},
+                   {0, 4, 6},
+                   {0, 6, 2},
+                   {1, 3, 7},
+                   {1, 7, 5},
+                   {0, 1, 5},
+                   {0, 5, 4},
+                   {2, 6, 7},
+                   {2, 7, 3}})}};
+}
+
+}  // namespace
+
+std::vector<NamedMesh> small_meshes(int dimension, int element_points) {
+  std::vector<NamedMesh> meshes;
+  if (dimension == 2 && element_points == 2) meshes = {rod(false), rod(true)};
+  if (dimension == 2 && element_points == 3) meshes = {patch(2)};
+  if (dimension == 3 && element_points == 3) meshes = {patch(3), closed_shell()};
+  if (element_points == 4) {
+    meshes = {{"box", sim_mesh(box_mesh({2, 1, 1}, {0.5, 0.4, 0.3}, {-0.25, 0, -0.15}))}};
+  }
+  CounterRng rng(7);
+  for (NamedMesh& named : meshes) {
+    // Vertices on the ground stay there.
+    for (Eigen::Index i = 0; i < named.mesh.V.rows(); ++i) {
+      for (Eigen::Index axis = 0; axis < dimension; ++axis) {
+        if (axis != 1 || named.mesh.V(i, 1) > 1e-9) named.mesh.V(i, axis) += rng.uniform(-0.015, 0.015);
+      }
+    }
+  }
+  return meshes;
+}
+
+std::vector<ExamplePose> smooth_poses(const SimMesh& mesh) {
+  const int d = mesh.dimension();
+  const Eigen::RowVectorXd low = mesh.V.colwise().minCoeff(), high = mesh.V.colwise().maxCoeff();
+  const auto pose = [&](const char* name, const char* group, double angle, const auto& deform) {
+    ExamplePose result{name, group, mesh.V};
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
+      Eigen::Vector3d u = Eigen::Vector3d::Zero();  // the bounding box is [−1, 1]^d
+      u.head(d) = ((2 * mesh.V.row(i) - low - high).array() / (high - low).array()).matrix().transpose();
+      const Eigen::Vector3d y = deform(u);
+      const Eigen::Vector3d turned(c * y.x() - s * y.y(), s * y.x() + c * y.y(), y.z());
+      result.V.row(i) = 0.25 * turned.head(d).transpose();
+    }
+    return result;
+  };
+  using Point = Eigen::Vector3d;
+  return {pose("bent", "a", 0.7,
+               [](const Point& u) -> Point {
+                 return {u.x() + 0.3 * u.y() * u.y(), u.y() - 0.2 * u.x() * u.x(), u.z()};
+               }),
+          pose("tall", "a", -2.5,
+               [](const Point& u) -> Point {
+                 return {0.8 * u.x() + 0.2 * u.y(), 1.3 * u.y(), 0.9 * u.z()};
+               }),
+          pose("twisted", "b", 1.2, [](const Point& u) -> Point {
+            const double angle = 0.4 * u.y(), size = 1 + 0.2 * u.y();
+            return {size * (std::cos(angle) * u.x() + std::sin(angle) * u.z()), u.y() + 0.1 * u.x(),
+                    size * (std::cos(angle) * u.z() - std::sin(angle) * u.x())};
+          })};
+}
+
+Matrix multilinear_weights(const RowMatrixXd& V) {
+  const Eigen::Index d = V.cols(), corners = Eigen::Index(1) << d;
+  const Eigen::RowVectorXd min = V.colwise().minCoeff(), max = V.colwise().maxCoeff();
+  const Eigen::RowVectorXd margin = 0.1 * (max - min), low = min - margin, size = max + margin - low;
+  Matrix weights = Matrix::Ones(V.rows(), corners);
   for (Eigen::Index i = 0; i < V.rows(); ++i) {
-    const Eigen::Vector3d t = (V.row(i).transpose() - low).cwiseQuotient(size);
-    for (int c = 0; c < 8; ++c) {
-      weights(i, c) = (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) * (c & 4 ? t.z() : 1 - t.z());
+    const Eigen::RowVectorXd t = (V.row(i) - low).cwiseQuotient(size);
+    for (Eigen::Index c = 0; c < corners; ++c) {
+      for (Eigen::Index axis = 0; axis < d; ++axis) weights(i, c) *= c >> axis & 1 ? t[axis] : 1 - t[axis];
     }
   }
   return weights;
 }
 
-namespace {
-
-ContactPoints contact_points(const std::vector<std::array<int, 4>>& vertices,
-                             const std::vector<std::array<double, 4>>& weights) {
-  ContactPoints points;
-  points.vertices.resize(static_cast<Eigen::Index>(vertices.size()), 4);
-  points.weights.resize(static_cast<Eigen::Index>(vertices.size()), 4);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    for (int k = 0; k < 4; ++k) {
-      points.vertices(static_cast<Eigen::Index>(i), k) = vertices[i][k];
-      points.weights(static_cast<Eigen::Index>(i), k) = weights[i][k];
+ContactPoints vertex_contacts(const SimMesh& mesh) {
+  std::set<int> touching(mesh.E.data(), mesh.E.data() + mesh.E.size());
+  if (mesh.element_points() == 4) {
+    const Triangles faces = boundary_faces({mesh.V, mesh.E});
+    touching = std::set<int>(faces.data(), faces.data() + faces.size());
+  }
+  const Eigen::Index count = static_cast<Eigen::Index>(touching.size());
+  ContactPoints points{RowMatrixXi(count, mesh.E.cols()), RowMatrixXd::Zero(count, mesh.E.cols()),
+                       mesh.dimension()};
+  points.weights.col(0).setOnes();
+  Eigen::Index i = 0;
+  for (const int v : touching) {
+    for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+      Eigen::RowVectorXi corners = mesh.E.row(e);
+      const auto found = std::find(corners.begin(), corners.end(), v);
+      if (found == corners.end()) continue;
+      std::iter_swap(corners.begin(), found);
+      points.vertices.row(i++) = corners;
+      break;
     }
   }
   return points;
 }
 
-}  // namespace
-
-ContactPoints vertex_contacts(const TetMesh& mesh) {
-  const Triangles faces = boundary_faces(mesh);
-  const std::set<int> boundary(faces.data(), faces.data() + faces.size());
-  std::vector<std::array<int, 4>> vertices;
-  for (const int v : boundary) {
-    for (int t = 0; t < mesh.T.rows(); ++t) {
-      std::array<int, 4> corners = {mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)};
-      const auto found = std::find(corners.begin(), corners.end(), v);
-      if (found == corners.end()) continue;
-      std::swap(corners[0], *found);
-      vertices.push_back(corners);
-      break;
-    }
-  }
-  return contact_points(vertices, std::vector<std::array<double, 4>>(vertices.size(), {1, 0, 0, 0}));
-}
-
-ContactPoints fractional_contacts(const TetMesh& mesh, std::uint64_t seed) {
+ContactPoints inner_contacts(const SimMesh& mesh, int count, std::uint64_t seed) {
   CounterRng rng(seed);
-  const Triangles faces = boundary_faces(mesh);
-  std::vector<std::array<int, 4>> vertices;
-  std::vector<std::array<double, 4>> weights;
-  for (int f = 0; f < faces.rows(); ++f) {
-    for (int t = 0; t < mesh.T.rows(); ++t) {
-      std::array<int, 4> corners = {faces(f, 0), faces(f, 1), faces(f, 2), -1};
-      int shared = 0;
-      for (int k = 0; k < 4; ++k) {
-        const int v = mesh.T(t, k);
-        if (std::find(corners.begin(), corners.begin() + 3, v) != corners.begin() + 3) {
-          ++shared;
-        } else {
-          corners[3] = v;
-        }
-      }
-      if (shared < 3) continue;
-      const double a = rng.uniform(0.2, 0.4), b = rng.uniform(0.2, 0.4), inner = rng.uniform(0.002, 0.01);
-      vertices.push_back(corners);
-      weights.push_back({a, b, 1 - a - b - inner, inner});
-      break;
+  ContactPoints points{RowMatrixXi(count * mesh.E.rows(), mesh.E.cols()),
+                       RowMatrixXd(count * mesh.E.rows(), mesh.E.cols()), mesh.dimension()};
+  for (Eigen::Index i = 0; i < points.vertices.rows(); ++i) {
+    const Eigen::Index e = i / count;
+    points.vertices.row(i) = mesh.E.row(e);
+    for (Eigen::Index k = 0; k < mesh.E.cols(); ++k) {  // nearer to the lower corners
+      points.weights(i, k) = rng.uniform(0.2, 1) * (mesh.V(mesh.E(e, k), 1) < 0.05 ? 20 : 1);
     }
+    points.weights.row(i) /= points.weights.row(i).sum();
   }
-  return contact_points(vertices, weights);
+  return points;
 }
 
 ContactPoints join(const ContactPoints& a, const ContactPoints& b) {
   ContactPoints both;
-  both.vertices.resize(a.size() + b.size(), 4);
-  both.weights.resize(a.size() + b.size(), 4);
+  both.dimension = a.dimension;
+  both.vertices.resize(a.size() + b.size(), a.corners());
+  both.weights.resize(a.size() + b.size(), a.corners());
   both.vertices << a.vertices, b.vertices;
   both.weights << a.weights, b.weights;
   return both;
@@ -145,10 +257,42 @@ BodyInput box_input(const TetMesh& mesh, const Scene& scene) {
   return {"box",
           sim_mesh(mesh),
           "cage",
-          trilinear_weights(mesh.V),
+          multilinear_weights(mesh.V),
           {},
-          vertex_contacts(mesh),
+          vertex_contacts(sim_mesh(mesh)),
           settings(model_schema(), scene.model),
+          settings(regularizer_schema(), scene.regularizer),
+          settings(contact_schema(), scene.contact),
+          settings(controller_schema(), scene.controller),
+          settings(solver_schema(), scene.solver)};
+}
+
+std::vector<BodyCase> body_cases(std::span<const ModelEntry> models, std::span<const RestSpaceEntry> spaces) {
+  std::vector<BodyCase> cases;
+  for (const ModelEntry& model : models) {
+    for (const NamedMesh& mesh : small_meshes(model.dimension, model.element_points)) {
+      for (const RestSpaceEntry& space : spaces) cases.push_back({model, space, mesh});
+    }
+  }
+  return cases;
+}
+
+std::string case_name(const ::testing::TestParamInfo<BodyCase>& tested) {
+  const auto& [model, space, mesh] = tested.param;
+  return std::string(model.name) + "_" + mesh.name + "_" + std::string(space.name);
+}
+
+BodyInput body_input(const BodyCase& body, const Scene& scene) {
+  const SimMesh& mesh = body.mesh.mesh;
+  const std::string model =
+      "{type: " + std::string(body.model.name) + (scene.model.empty() ? "" : ", " + scene.model) + "}";
+  return {body.mesh.name,
+          mesh,
+          std::string(body.space.name),
+          multilinear_weights(mesh.V),
+          smooth_poses(mesh),
+          vertex_contacts(mesh),
+          settings(model_schema({&body.model, 1}), model),
           settings(regularizer_schema(), scene.regularizer),
           settings(contact_schema(), scene.contact),
           settings(controller_schema(), scene.controller),
@@ -201,7 +345,7 @@ void set_motion(World& world, const Vector& x, const Vector& v) {
   std::filesystem::remove(path);
 }
 
-Vector flat(const Points& V) { return Eigen::Map<const Vector>(V.data(), V.size()); }
+Vector flat(const RowMatrixXd& V) { return Eigen::Map<const Vector>(V.data(), V.size()); }
 Points rows(const Vector& x) { return Eigen::Map<const Points>(x.data(), x.size() / 3, 3); }
 
 Vector random_vector(Eigen::Index size, double scale, CounterRng& rng) {
@@ -219,6 +363,16 @@ Vector rigid(const Eigen::Matrix3d& R, const Eigen::Vector3d& b, const Vector& x
   Vector y(x.size());
   for (Eigen::Index i = 0; i < x.size(); i += 3) y.segment<3>(i) = R * x.segment<3>(i) + b;
   return y;
+}
+
+Matrix random_rotation(int dimension, CounterRng& rng) {
+  if (dimension == 3) return random_rotation(rng);
+  return Eigen::Rotation2Dd(rng.uniform(0.5, 3)).toRotationMatrix();
+}
+
+Vector moved(const Matrix& R, const Vector& b, const Vector& x) {
+  const Eigen::Index d = R.rows();
+  return ((R * x.reshaped(d, x.size() / d)).colwise() + b).reshaped();
 }
 
 Matrix dense(const SymmetricMatrix& matrix) {
@@ -240,47 +394,76 @@ Matrix differences(const Function& f, const Vector& x, double eps) {
 
 double relative(const Matrix& a, const Matrix& b) { return (a - b).norm() / b.norm(); }
 
-double convergence(const Function& f, const Vector& x, const Vector& d, const Vector& exact, double eps) {
-  const auto error = [&](double step) {
-    return ((f(x + step * d) - f(x - step * d)) / (2 * step) - exact).norm();
-  };
-  return error(2 * eps) / error(eps);
+namespace {
+
+double difference_error(const Function& f, const Vector& x, const Vector& d, const Vector& exact,
+                        double eps) {
+  return ((f(x + eps * d) - f(x - eps * d)) / (2 * eps) - exact).norm();
 }
 
-RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
+}  // namespace
+
+double convergence(const Function& f, const Vector& x, const Vector& d, const Vector& exact, double eps) {
+  return difference_error(f, x, d, exact, 2 * eps) / difference_error(f, x, d, exact, eps);
+}
+
+::testing::AssertionResult converges(const Function& f, const Vector& x, const Vector& d, const Vector& exact,
+                                     double eps) {
+  const double rounding = 1e-10 * exact.norm();
+  const double coarse = difference_error(f, x, d, exact, 2 * eps),
+               fine = difference_error(f, x, d, exact, eps);
+  if (coarse <= rounding || (coarse >= 3.8 * fine && coarse <= 4.2 * fine))
+    return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "errors " << coarse << " and " << fine << " of " << exact.norm();
+}
+
+RandomStep::RandomStep(std::uint64_t seed, double friction, double noise)
+    : RandomStep({elastic_models()[0], rest_space_entry("cage"), {"box", sim_mesh(small_box())}},
+                 {.model = "density: 300, stiffness: 88000, volume_stiffness: 88000",
+                  .regularizer = "{stiffness: 0.03, volume_stiffness: 0.03, rate: 0.03}"},
+                 seed, friction, noise) {}
+
+RandomStep::RandomStep(const BodyCase& tested, const Scene& scene, std::uint64_t seed, double friction,
+                       double noise) {
   CounterRng rng(seed);
   const WorldSettings world;
-  const Eigen::Matrix3d tilt = random_rotation(rng);
-  TetMesh mesh = small_box();
-  const Vector straight = flat(mesh.V);
-  mesh.V = rows(rigid(tilt, {0, 0, 0}, straight));
-  BodyInput input =
-      box_input(mesh, {.model = "{type: solid3d, density: 300, stiffness: 88000, volume_stiffness: 88000}",
-                       .regularizer = "{stiffness: 0.03, volume_stiffness: 0.03, rate: 0.03}"});
-  input.contact_points = join(vertex_contacts(mesh), fractional_contacts(mesh, seed));
-  body = make_body_model(input, world);
+  const int d = tested.model.dimension;
+  const Matrix tilt = random_rotation(d, rng);
+  const Vector origin = Vector::Zero(d), straight = flat(tested.mesh.mesh.V);
+  BodyCase tilted = tested;
+  tilted.mesh.mesh.V = moved(tilt, origin, straight).reshaped<Eigen::RowMajor>(straight.size() / d, d);
+  BodyInput input = body_input(tilted, scene);
+  input.contact_points = join(vertex_contacts(tested.mesh.mesh), inner_contacts(tested.mesh.mesh, 2, seed));
+  body = make_body_model(input, world, tested.model, tested.space);
   const double layer = 0.02;
   const double point_weight = body.weight / 10;
   const ContactParameters parameters = {layer, point_weight / (layer * layer), 2 * point_weight / layer};
 
   // Sheared and noisy, the lowest layer of vertices near the plane y = 0, then all tilted.
   Vector lying = straight + random_vector(straight.size(), noise, rng);
-  for (Eigen::Index i = 0; i < lying.size(); i += 3) {
-    if (straight[i + 1] == 0) {
-      lying[i + 1] = layer * (rng.uniform() < 0.75 ? rng.uniform(0.1, 0.85) : rng.uniform(1.15, 2));
+  int low = 0;
+  for (Eigen::Index i = 0; i < lying.size(); i += d) {
+    if (straight[i + 1] < 0.05) {
+      lying[i + 1] = layer * (low++ % 4 < 3 ? rng.uniform(0.1, 0.85) : rng.uniform(1.15, 2));
     } else {
       lying[i] += 0.1 * straight[i + 1];
       lying[i + 1] -= 0.05 * straight[i + 1];
     }
   }
-  x = rigid(tilt, {0, 0, 0}, lying);
-  q = random_vector(body.rest->free_parameters(), 0.02, rng);
-  const Vector q_n = q + random_vector(q.size(), 0.01, rng);
+  x = moved(tilt, origin, lying);
+  // Away from the kinks of the hull, on either side.
+  q = random_vector(body.rest->free_parameters(), 0.04 * body.rest->unit(), rng);
+  for (const std::vector<int>& group : body.rest->groups()) {
+    for (const int k : group) q[k] += k % 3 == 0 ? 0.7 : k % 3 == 1 ? 0.5 : -0.15;
+  }
+  const Vector q_n = q + random_vector(q.size(), 0.02 * body.rest->unit(), rng);
   const Vector x_tilde = x + random_vector(x.size(), 0.005, rng);
 
   // What the points remember: every third one has just arrived, the others are 0.3 or 1.7 slip limits from
   // their anchors (with unlimited friction: as far, of the limit for μ = 1).
-  colliders = one(plane(friction, tilt.col(1)));
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  normal.head(d) = tilt.col(1);
+  colliders = one(plane(friction, normal));
   std::vector<ContactMemory> memory(static_cast<std::size_t>(body.contact_points.size()));
   for (int i = 0; i < body.contact_points.size(); ++i) {
     if (i % 3 == 2) continue;
@@ -292,15 +475,20 @@ RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
         Friction(parameters.friction_stiffness, (std::isinf(friction) ? 1 : friction) * point.normal_force)
             .slip_limit();
     const double angle = rng.uniform(0, 6.28);
-    const Eigen::Vector3d direction =
-        tilt * Eigen::Vector3d(std::cos(angle), rng.uniform(-0.5, 0.5), std::sin(angle));
-    point.anchor = body.contact_points.position(i, x) - (i % 3 == 0 ? 0.3 : 1.7) * limit * direction;
+    Vector direction(d);
+    if (d == 2) {
+      direction << (angle < 3.14 ? 1 : -1), rng.uniform(-0.5, 0.5);
+    } else {
+      direction << std::cos(angle), rng.uniform(-0.5, 0.5), std::sin(angle);
+    }
+    point.anchor = body.contact_points.position(i, x);
+    point.anchor.head(d) -= (i % 3 == 0 ? 0.3 : 1.7) * limit * (tilt * direction);
   }
   contacts = ContactSet(body.contact_points, parameters, colliders, x, 0.1, memory);
   for (const Contact& contact : contacts.contacts()) {
-    const double d = contacts.distance(contact, x);
-    (d < layer ? pressing : above) += 1;
-    room = std::min(room, std::abs(d - layer));
+    const double distance = contacts.distance(contact, x);
+    (distance < layer ? pressing : above) += 1;
+    room = std::min(room, std::abs(distance - layer));
     if (contact.point % 3 == 2) continue;
     const Eigen::Vector3d offset = body.contact_points.position(contact.point, x) - contact.anchor;
     const double slip = (offset - contact.normal * contact.normal.dot(offset)).norm();
@@ -312,13 +500,16 @@ RandomStep::RandomStep(std::uint64_t seed, double friction, double noise) {
   std::vector<Goal> wanted;
   for (int axis = 0; axis < 3; ++axis) {
     const double kd = std::sqrt(body.mass.sum());
-    wanted.push_back({centre_of_mass_weights(body.mass, Eigen::Vector3d::Unit(axis)), 2 * kd, kd,
+    wanted.push_back({centre_of_mass_weights(body.mass, Eigen::Vector3d::Unit(axis), d), 2 * kd, kd,
                       rng.uniform(-0.2, 0.2), rng.uniform(-1, 1)});
     wanted.push_back(
         {spin_weights(body.mass, x_tilde, Eigen::Vector3d::Unit(axis)), 0, 0.3 * kd, 0, rng.uniform(-1, 1)});
   }
   goals = make_goals(wanted, x_tilde, world.h);
-  problem = std::make_unique<StepProblem>(body, contacts, goals, x, x_tilde, q_n, world.h);
+  // The last step ended a little elsewhere, which damping sees.
+  const Vector x_n = x + random_vector(x.size(), 0.005, rng);
+  problem = std::make_unique<StepProblem>(body, contacts, goals, x_n, x_tilde, q_n, world.h);
+  in_air = std::make_unique<StepProblem>(body, no_contacts, goals, x_n, x_tilde, q_n, world.h);
   workspace = std::make_unique<StepWorkspace>(*body.pattern);
 }
 
