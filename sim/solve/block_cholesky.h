@@ -14,7 +14,7 @@ namespace vivify::sim {
 class BlockCholesky {
  public:
   // `lower` is the lower triangle of the matrices to come, columns sorted; rows dim·v … dim·v + dim − 1
-  // belong to vertex v.
+  // (dim <= 3) belong to vertex v.
   BlockCholesky(const Eigen::SparseMatrix<double>& lower, int dim);
 
   // Takes the values of a matrix in the order of the pattern. False at the first pivot that is not positive:
