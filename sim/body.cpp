@@ -19,11 +19,13 @@ namespace {
 constexpr int kMaxContactPasses = 3;     // solves of one step while contact planes still move
 constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
 constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of force even where there is none
-constexpr double kLeastHeight = 0.2;     // of the diagonal: the unit of length of bodies that lie flat
 constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
 constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
 constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
 constexpr int kMaxStepSplits = 4;          // a step that cannot be solved is cut in halves so many times
+constexpr double kTimeLimit = 100;  // of the median of the last steps: a step that takes longer is given up
+constexpr double kLeastTimeLimit = 10;  // s; a busy machine is no reason to stop
+constexpr std::size_t kTimedSteps = 50;
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
   return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d);
@@ -61,8 +63,7 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
   body.elastic = std::move(elastic.families);
   body.mass = std::move(elastic.mass);
   body.damping = input.model["damping_s"].as_number();
-  const Eigen::RowVectorXd extent = V.colwise().maxCoeff() - V.colwise().minCoeff();
-  body.height = std::max(extent[1], kLeastHeight * extent.norm());
+  body.height = unit_length(V);
   body.weight = body.mass.sum() * std::max(settings.gravity.norm(), kLeastGravity);
 
   body.rest = space.make({body.mesh, body.elastic, elastic.rest, input.cage_weights, input.examples});
@@ -255,9 +256,10 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   }
 
   const State before{x_, v_, q_, contact_memory_};
+  workspace_->deadline = step_deadline();
   StepRecord record;
   bool solved = false;
-  for (int splits = 0; splits <= kMaxStepSplits && !solved; ++splits) {
+  for (int splits = 0; splits <= kMaxStepSplits && !solved && !workspace_->expired(); ++splits) {
     record.residual_rel = record.p_rate = 0;
     record.substeps = 1 << splits;
     solved = true;
@@ -273,6 +275,12 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
     v_ = before.v;
     q_ = before.q;
     contact_memory_ = before.contacts;
+  }
+  if (!solved && workspace_->expired()) {
+    throw Error(ErrorKind::numerical,
+                "body '" + model_.name + "', step " + std::to_string(step) + ": not solved in " +
+                    number_text(kTimeLimit) + " times the time of the steps before",
+                "raise frames.steps_per_frame, or make the model stiffer");
   }
   if (!solved) {
     throw Error(ErrorKind::numerical,
@@ -300,8 +308,25 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   record.max_penetration = std::max(0.0, -record.min_clearance);
   const Eigen::Matrix3d R = best_rotation(model_.mass, rest_, x_);
   record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
-  wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  note_step_time(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return record;
+}
+
+// None until enough steps tell how long one takes.
+std::chrono::steady_clock::time_point Body::step_deadline() const {
+  if (step_seconds_.size() < kTimedSteps) return std::chrono::steady_clock::time_point::max();
+  std::vector<double> sorted = step_seconds_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const std::chrono::duration<double> limit(std::max(kTimeLimit * *middle, kLeastTimeLimit));
+  return std::chrono::steady_clock::now() +
+         std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+}
+
+void Body::note_step_time(double seconds) {
+  wall_seconds_ += seconds;
+  if (step_seconds_.size() == kTimedSteps) step_seconds_.erase(step_seconds_.begin());
+  step_seconds_.push_back(seconds);
 }
 
 void Body::measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const {

@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,6 +72,8 @@ class Body {
   // found.
   bool settle(const Eigen::VectorXd& q, StepRecord& record);
   StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record);
+  std::chrono::steady_clock::time_point step_deadline() const;
+  void note_step_time(double seconds);
   void measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const;
 
   WorldSettings settings_;
@@ -81,6 +84,7 @@ class Body {
   Eigen::VectorXd x_, v_, q_;
   std::vector<ContactMemory> contact_memory_;
   double wall_seconds_ = 0;
+  std::vector<double> step_seconds_;  // of the last steps, for the time limit
 };
 
 }  // namespace vivify::sim

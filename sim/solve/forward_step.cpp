@@ -19,7 +19,9 @@ ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, co
   for (;; ++result.iterations) {
     result.residual = c.lpNorm<Eigen::Infinity>() / weight;
     result.converged = result.residual <= tolerance;
-    if (result.converged || result.iterations == kMaxIterations || !std::isfinite(potential)) return result;
+    if (result.converged || result.iterations == kMaxIterations || !std::isfinite(potential) ||
+        workspace.expired())
+      return result;
 
     if (!factorized) {
       problem.stiffness(result.at, rest, workspace.D);

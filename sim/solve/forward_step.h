@@ -2,6 +2,8 @@
 // Newton's method. It is the passive simulator, and the start and finish of every controlled step.
 #pragma once
 
+#include <chrono>
+
 #include "sim/solve/linear_solver.h"
 #include "sim/solve/step_problem.h"
 
@@ -14,12 +16,15 @@ struct ForwardResult {
   bool converged = false;
 };
 
-// What the solvers of one body share: the stiffness matrix and its factorisation.
+// What the solvers of one body share: the stiffness matrix and its factorisation, and the time they have.
 struct StepWorkspace {
   explicit StepWorkspace(const SymmetricPattern& pattern) : D(pattern), block(pattern), solver(pattern) {}
   SymmetricMatrix D;
   SymmetricMatrix block;
   LinearSolver solver;
+  // A step that takes longer is given up; the solvers look at the clock once per iteration.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  bool expired() const { return std::chrono::steady_clock::now() > deadline; }
 };
 
 // From `x`, until ‖c‖∞ ≤ tolerance · weight. `factorized`: the workspace holds the factorisation of D at (x,

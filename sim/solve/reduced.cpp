@@ -24,7 +24,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
   double mu = 0;
   int small_gains = 0;
   bool factorized = false;  // the workspace holds D of the solution
-  while (feasible_start && solution.iterations < body.solver.max_iterations) {
+  while (feasible_start && solution.iterations < body.solver.max_iterations && !workspace.expired()) {
     Eigen::VectorXd dq, dx, gradient;
     bool accepted = false;
     const double before = objective;

@@ -30,7 +30,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
   double mu = 0, gamma = 0;
   int small_gains = 0;
   bool factorized = false;  // the workspace holds D of the solution
-  while (solution.iterations < body.solver.max_iterations) {
+  while (solution.iterations < body.solver.max_iterations && !workspace.expired()) {
     const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
     const bool is_feasible = block.residual().lpNorm<Eigen::Infinity>() <= feasible;
     if (!block.definite()) {
