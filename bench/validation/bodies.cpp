@@ -39,19 +39,78 @@ BodyModel body(const SimMesh& mesh, const std::string& model) {
   return make_body_model(body_input(mesh, model, "strains"), {});
 }
 
-std::vector<Sample> samples() {
+std::vector<Sample> samples(const std::string& keys) {
   const auto curved = [](SimMesh mesh) {
     for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 1) += 0.3 * std::pow(mesh.V(i, 0), 2);
     return mesh;
   };
-  return {
-      {"rod2d", curved(roughened(chain(8, 0, 1), 0.1, 1)), "{type: rod2d}"},
-      {"solid2d", roughened(rectangle(4, 2, 1, 0.5), 0.1, 2), "{type: solid2d}"},
-      {"solid2d_printed", roughened(rectangle(4, 2, 1, 0.5), 0.1, 3), "{type: solid2d_printed}"},
-      {"shell3d", curved(roughened(equilateral_strip(2, 0.5, 0, 1), 0.1, 4)), "{type: shell3d}"},
-      {"solid3d", roughened(box(3, 2, 2, 0.8, 0.5, 0.5), 0.1, 5), "{type: solid3d}"},
-      {"solid3d_stvk", roughened(box(3, 2, 2, 0.8, 0.5, 0.5), 0.1, 6), "{type: solid3d_stvk}"},
+  std::vector<Sample> list = {
+      {"rod2d", curved(roughened(chain(8, 0, 1), 0.1, 1)), {}},
+      {"solid2d", roughened(rectangle(4, 2, 1, 0.5), 0.1, 2), {}},
+      {"solid2d_printed", roughened(rectangle(4, 2, 1, 0.5), 0.1, 3), {}},
+      {"shell3d", curved(roughened(equilateral_strip(2, 0.5, 0, 1), 0.1, 4)), {}},
+      {"solid3d", roughened(box(3, 2, 2, 0.8, 0.5, 0.5), 0.1, 5), {}},
+      {"solid3d_stvk", roughened(box(3, 2, 2, 0.8, 0.5, 0.5), 0.1, 6), {}},
   };
+  for (Sample& sample : list) sample.yaml = "{type: " + sample.model + keys + "}";
+  return list;
+}
+
+RowMatrixXd bent_pose(const SimMesh& mesh, double curvature) {
+  RowMatrixXd V = mesh.V;
+  for (Eigen::Index i = 0; i < V.rows(); ++i) {
+    const double t = curvature * V(i, 0), r = 1 / curvature + V(i, 1);
+    V(i, 0) = r * std::sin(t) + 0.05 * V(i, 1);
+    V(i, 1) = r * std::cos(t) - 1 / curvature;
+  }
+  return V;
+}
+
+BodyModel sample_body(const Sample& sample, const std::string& rest_space) {
+  BodyInput input = body_input(sample.mesh, sample.yaml, rest_space);
+  const RowMatrixXd& V = sample.mesh.V;
+  if (rest_space == "examples" || rest_space == "strains") {
+    input.examples = {{"left", "a", bent_pose(sample.mesh, 0.6)},
+                      {"right", "a", bent_pose(sample.mesh, -0.5)}};
+  }
+  if (rest_space == "cage") {
+    const Eigen::RowVectorXd low = V.colwise().minCoeff(), size = V.colwise().maxCoeff() - low;
+    input.cage_weights.setOnes(V.rows(), 1 << V.cols());
+    for (Eigen::Index i = 0; i < V.rows(); ++i) {
+      for (int c = 0; c < input.cage_weights.cols(); ++c) {
+        for (Eigen::Index k = 0; k < V.cols(); ++k) {
+          const double t = (V(i, k) - low[k]) / size[k];
+          input.cage_weights(i, c) *= (c >> k & 1) != 0 ? t : 1 - t;
+        }
+      }
+    }
+  }
+  return make_body_model(input, {});
+}
+
+Vector random_vector(Eigen::Index size, double reach, CounterRng& rng) {
+  Vector v(size);
+  for (double& value : v) value = rng.uniform(-reach, reach);
+  return v;
+}
+
+StepState::StepState(const Sample& sample, const std::string& rest_space, std::uint64_t seed)
+    : body(sample_body(sample, rest_space)) {
+  CounterRng rng(seed);
+  const double h = 1.0 / 48;
+  const Vector X = flat(body.mesh.V), x_n = X + random_vector(X.size(), 0.01, rng);
+  x = x_n + random_vector(X.size(), 0.01, rng);
+  const double reach = body.rest->unit() == 1 ? 0.3 : 0.01;
+  q = random_vector(body.rest->free_parameters(), reach, rng);
+  std::vector<Goal> wanted;
+  for (int axis = 0; axis < body.dimension(); ++axis) {
+    wanted.push_back({centre_of_mass_weights(body.mass, Eigen::Vector3d::Unit(axis), body.dimension()), 0,
+                      std::sqrt(body.mass.sum()), 0, rng.uniform(-1, 1)});
+  }
+  goals = make_goals(wanted, x_n, h);
+  problem =
+      std::make_unique<StepProblem>(body, contacts, goals, x_n, x_n + random_vector(X.size(), 0.01, rng),
+                                    q + random_vector(q.size(), reach / 3, rng), h);
 }
 
 double energy(const BodyModel& body, const std::vector<Vector>& S, const Vector& x) {
@@ -133,6 +192,38 @@ double lowest_frequency(const BodyModel& body, const std::vector<bool>& held) {
     mode = next / next.norm();
   }
   return std::sqrt(omega2);
+}
+
+Motion::Motion(const BodyModel& body, Vector x, Vector v, double h, double gravity)
+    : body_(body),
+      workspace_(*body.pattern),
+      x_(std::move(x)),
+      v_(std::move(v)),
+      forces_(Vector::Zero(x_.size())),
+      h_(h),
+      gravity_(gravity) {}
+
+void Motion::step(const Vector& q) {
+  Vector x_tilde = x_ + h_ * v_;
+  for (Eigen::Index i = 1; i < x_.size(); i += body_.dimension()) x_tilde[i] -= h_ * h_ * gravity_;
+  const ContactSet none;
+  const Goals goals = make_goals({}, x_, h_);
+  const StepProblem problem(body_, none, goals, x_, x_tilde, q, h_);
+  const RestPoint rest = problem.rest_point(q, false);
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * body_.mass.maxCoeff() / (h_ * h_) *
+                          x_.cwiseAbs().maxCoeff() / body_.weight;
+  const ForwardResult end =
+      forward_step(problem, rest, x_ + h_ * v_, std::max(kFinishTolerance, rounding), workspace_);
+  if (!end.converged) throw Error(ErrorKind::numerical, "a step of the motion was not solved");
+  forces_ = -problem.internal_gradient(end.at, rest);
+  v_ = (end.at.x - x_) / h_;
+  x_ = end.at.x;
+}
+
+double Motion::kinetic_energy() const { return 0.5 * coordinate_masses(body_).dot(v_.cwiseAbs2()); }
+
+Vector coordinate_masses(const BodyModel& body) {
+  return body.mass.transpose().replicate(body.dimension(), 1).reshaped();
 }
 
 Resultant resultant(const Vector& x, const Vector& forces, int dimension) {

@@ -8,8 +8,15 @@ namespace vivify::validation {
 namespace {
 
 constexpr std::array kProblems = {
+    ProblemEntry{"derivatives", derivatives},
+    ProblemEntry{"elimination", elimination},
+    ProblemEntry{"patch", patch},
+    ProblemEntry{"rest_invariance", rest_invariance},
+    ProblemEntry{"flight", flight},
+    ProblemEntry{"integrator", integrator},
     ProblemEntry{"cantilever", cantilever},
     ProblemEntry{"large_deflection", large_deflection},
+    ProblemEntry{"buckling", buckling},
     ProblemEntry{"inversion", inversion},
 };
 
@@ -17,6 +24,10 @@ constexpr std::array kProblems = {
 
 double Figure::error() const {
   return reference == 0 ? std::abs(ours) : std::abs(ours - reference) / std::abs(reference);
+}
+
+void Largest::add(double error) {
+  if (!(error <= value)) value = std::isnan(error) ? INFINITY : error;
 }
 
 std::span<const ProblemEntry> problems() { return kProblems; }

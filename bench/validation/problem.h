@@ -20,6 +20,12 @@ struct Figure {
   bool holds() const { return error() <= tolerance; }  // false for NaN
 };
 
+// The largest of some errors; infinite when one is not a number.
+struct Largest {
+  double value = 0;
+  void add(double error);
+};
+
 struct Curve {
   std::string name;
   std::vector<double> x = {}, y = {};
