@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -9,6 +10,8 @@
 
 namespace vivify::sim {
 namespace {
+
+constexpr double kLeastHeight = 0.2;  // of the diagonal
 
 constexpr std::array<RestSpaceEntry, 4> kSpaces = {{
     {"cage", RestLayout::compatible, make_cage_space},
@@ -67,6 +70,11 @@ Eigen::VectorXd stack(const RowMatrixXd& V, const RestPoints& points) {
     X.segment(d * i, d) = V.row(points.vertex[static_cast<std::size_t>(i)]).transpose();
   }
   return X;
+}
+
+double unit_length(const RowMatrixXd& V) {
+  const Eigen::RowVectorXd extent = V.colwise().maxCoeff() - V.colwise().minCoeff();
+  return std::max(extent[1], kLeastHeight * extent.norm());
 }
 
 std::vector<std::vector<int>> example_groups(const std::vector<ExamplePose>& examples) {

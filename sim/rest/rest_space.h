@@ -104,6 +104,8 @@ std::unique_ptr<RestSpace> make_strains_space(const RestSpaceInput& input);
 
 // Flat vector (d #points) of the positions V (#V by d) of the vertices that the points copy.
 Eigen::VectorXd stack(const RowMatrixXd& V, const RestPoints& points);
+// The unit of length of a body (m): its height (along y), for bodies that lie flat a fifth of their diagonal.
+double unit_length(const RowMatrixXd& V);
 // Groups of examples as lists of their parameters.
 std::vector<std::vector<int>> example_groups(const std::vector<ExamplePose>& examples);
 

@@ -128,6 +128,7 @@ TEST_P(BodyTest, RunsAndGoesOnWithTheSameBytes) {
   EXPECT_EQ(body.at("model"), c.model);
   EXPECT_EQ(body.at("space"), c.space);
   EXPECT_LE(body.at("max_residual_rel"), 1e-8);
+  EXPECT_EQ(read_text_file(scene.out() / "sim/steps.csv").find("nan"), std::string::npos);
   const RowMatrixXd X0 = Hdf5Reader(scene.out() / "mesh/body.h5").matrix("/X0");
   EXPECT_EQ(X0.cols(), c.dimension);
   EXPECT_EQ(body.at("dofs"), X0.size());

@@ -17,8 +17,7 @@ std::unique_ptr<RestSpace> make_cage_space(const RestSpaceInput& input) {
   }
   Eigen::VectorXd X0 = stack(V, input.points);
   Eigen::MatrixXd basis = shape_changing_basis(X0, L, input.reference.dimension());
-  const double height = V.col(1).maxCoeff() - V.col(1).minCoeff();
-  return std::make_unique<ShapeSpace>(std::move(X0), L, std::move(basis), height);
+  return std::make_unique<ShapeSpace>(std::move(X0), L, std::move(basis), unit_length(V));
 }
 
 }  // namespace vivify::sim

@@ -7,8 +7,7 @@ std::unique_ptr<RestSpace> make_full_space(const RestSpaceInput& input) {
   Eigen::VectorXd X0 = stack(input.reference.V, input.points);
   const Eigen::MatrixXd L = Eigen::MatrixXd::Identity(X0.size(), X0.size());
   Eigen::MatrixXd basis = shape_changing_basis(X0, L, input.reference.dimension());
-  const double height = input.reference.V.col(1).maxCoeff() - input.reference.V.col(1).minCoeff();
-  return std::make_unique<ShapeSpace>(std::move(X0), L, std::move(basis), height);
+  return std::make_unique<ShapeSpace>(std::move(X0), L, std::move(basis), unit_length(input.reference.V));
 }
 
 }  // namespace vivify::sim
