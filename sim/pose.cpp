@@ -1,6 +1,8 @@
 #include "sim/pose.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -91,6 +93,55 @@ class Grip {
   Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), axis_;
 };
 
+// Spreads displacements of the held vertices over the others, each of which takes the mean of its neighbours:
+// elements beside a handle are not crushed by its first step.
+class Spread {
+ public:
+  Spread(const SimMesh& mesh, const std::vector<bool>& held) : index_(held.size(), -1) {
+    int free = 0;
+    for (std::size_t v = 0; v < held.size(); ++v) {
+      if (!held[v]) index_[v] = free++;
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& element : mesh.E.rowwise()) {
+      for (const int a : element) {
+        const int row = index_[static_cast<std::size_t>(a)];
+        if (row < 0) continue;
+        for (const int b : element) {
+          if (a == b) continue;
+          entries.emplace_back(row, row, 1 + kFloating);
+          const int column = index_[static_cast<std::size_t>(b)];
+          if (column < 0) {
+            borders_.emplace_back(row, b);
+          } else {
+            entries.emplace_back(row, column, -1);
+          }
+        }
+      }
+    }
+    Eigen::SparseMatrix<double> laplacian(free, free);
+    laplacian.setFromTriplets(entries.begin(), entries.end());
+    solver_.compute(laplacian);
+  }
+
+  // `u` is #V by d with the displacements of the held vertices; those of the others are filled in.
+  void fill(RowMatrixXd& u) const {
+    Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(solver_.rows(), u.cols());
+    if (rhs.rows() == 0) return;
+    for (const auto& [row, vertex] : borders_) rhs.row(row) += u.row(vertex);
+    const Eigen::MatrixXd inside = solver_.solve(rhs);
+    for (std::size_t v = 0; v < index_.size(); ++v) {
+      if (index_[v] >= 0) u.row(static_cast<Eigen::Index>(v)) = inside.row(index_[v]);
+    }
+  }
+
+ private:
+  static constexpr double kFloating = 1e-9;   // holds parts that no handle reaches
+  std::vector<int> index_;                    // row of each free vertex, or -1
+  std::vector<std::pair<int, int>> borders_;  // row, held vertex
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+};
+
 class PoseSolver {
  public:
   PoseSolver(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
@@ -137,6 +188,7 @@ class PoseSolver {
     double most = 1;
     for (const Grip& grip : grips_) most = std::max(most, grip.increments(diagonal));
     const StaticProblem problem = {model_.families, pattern_, S_, force_, held_};
+    const Spread spread(rest_, held_);
     const double tolerance = kTolerance * unit_of_force();
     const double largest = 1 / std::ceil(most);
 
@@ -147,8 +199,13 @@ class PoseSolver {
     int halvings = 0;
     while (t < 1) {
       const double next = t + 1.5 * increment >= 1 ? 1 : t + increment;
-      // The free vertices go on as in the last increment.
+      // All goes on as in the last increment; what the handles want besides is spread.
       Eigen::VectorXd start = last > 0 ? Eigen::VectorXd(x + (next - t) / last * (x - before)) : x;
+      Eigen::VectorXd wanted = start;
+      for (const Grip& grip : grips_) grip.place(rest_.V, next, wanted);
+      RowMatrixXd change = rows(wanted) - rows(start);
+      spread.fill(change);
+      start += Eigen::Map<const Eigen::VectorXd>(change.data(), change.size());
       for (const Grip& grip : grips_) grip.place(rest_.V, next, start);
       StaticSolution trial = solve_static(problem, std::move(start), tolerance);
       solution.iterations += trial.iterations;
@@ -170,12 +227,16 @@ class PoseSolver {
       halvings = std::max(0, halvings - 1);
       increment = std::min(largest, 2 * increment);
     }
-    solution.V = Eigen::Map<const RowMatrixXd>(x.data(), rest_.V.rows(), rest_.V.cols());
+    solution.V = rows(x);
     for (const Grip& grip : grips_) solution.held.push_back(static_cast<int>(grip.vertices().size()));
     return solution;
   }
 
  private:
+  RowMatrixXd rows(const Eigen::VectorXd& x) const {
+    return Eigen::Map<const RowMatrixXd>(x.data(), rest_.V.rows(), rest_.V.cols());
+  }
+
   double unit_of_force() const {
     Eigen::VectorXd s, g, force = Eigen::VectorXd::Zero(rest_x_.size());
     for (std::size_t f = 0; f < S_.size(); ++f) {

@@ -10,6 +10,9 @@ constexpr int kMaxIterations = 500;
 constexpr int kMaxHalvings = 40;
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastShift = 1e-9;  // of the largest diagonal entry: rigid motions have no stiffness
+constexpr double kFirstShift = 1e-6;  // where that is not enough
+constexpr double kMostShift = 1e6;
+constexpr double kRaise = 4, kLower = 10;
 
 struct Evaluation {
   double energy = 0;
@@ -90,23 +93,26 @@ StaticSolution solve_static(const StaticProblem& problem, Eigen::VectorXd x, dou
   LinearSolver linear(problem.pattern);
   StaticSolution solution;
   Evaluation now = solver.evaluate(x);
+  double damping = kLeastShift;  // added to the diagonal of the stiffness, in units of its largest entry
   for (;; ++solution.iterations) {
     solution.residual = now.gradient.size() == 0 ? 0 : now.gradient.lpNorm<Eigen::Infinity>();
     solution.converged = solution.residual <= tolerance;
     if (solution.converged || solution.iterations == kMaxIterations || !std::isfinite(now.energy)) break;
 
-    double shift = kLeastShift * solver.stiffness(x, D);
-    Solver::add_diagonal(shift, D);
-    while (!linear.factorize(D) && std::isfinite(shift)) {
-      Solver::add_diagonal(3 * shift, D);
-      shift *= 4;
+    const double unit = solver.stiffness(x, D);
+    Solver::add_diagonal(damping * unit, D);
+    while (!linear.factorize(D) && damping < kMostShift) {
+      const double more = std::max(kRaise * damping, kFirstShift);
+      Solver::add_diagonal((more - damping) * unit, D);
+      damping = more;
     }
-    if (!std::isfinite(shift)) break;
+    if (!(damping < kMostShift)) break;
     const Eigen::VectorXd step = -linear.solve(now.gradient);
     const double slope = now.gradient.dot(step);
     bool accepted = false;
     double alpha = 1;
-    for (int halving = 0; halving < kMaxHalvings && !accepted; ++halving, alpha *= 0.5) {
+    int halving = 0;
+    for (; halving < kMaxHalvings && !accepted; ++halving, alpha *= 0.5) {
       Eigen::VectorXd trial = x + alpha * step;
       Evaluation there = solver.evaluate(trial);
       // Near the solution the energy is flat to rounding; there the gradient itself must shrink.
@@ -117,6 +123,10 @@ StaticSolution solve_static(const StaticProblem& problem, Eigen::VectorXd x, dou
       now = std::move(there);
     }
     if (!accepted) break;
+    // A step that was taken whole earns less damping; one that had to be cut short asks for more.
+    damping = halving == 1  ? std::max(damping / kLower, kLeastShift)
+              : halving > 2 ? std::max(kRaise * damping, kFirstShift)
+                            : damping;
   }
   solution.x = std::move(x);
   solution.energy = now.energy;

@@ -157,6 +157,47 @@ TEST(Pose, BendsAFlatSolid) {
   }
 }
 
+// A strip whose ends are turned apart by a quarter, free to come nearer: an arc, whose middle leans by half
+// of it.
+TEST(Pose, BendsAShell) {
+  SimMesh strip;
+  const int nx = 4, ny = 32;
+  strip.V.resize((nx + 1) * (ny + 1), 3);
+  strip.E.resize(2 * nx * ny, 3);
+  for (int j = 0, e = 0; j <= ny; ++j) {
+    for (int i = 0; i <= nx; ++i) {
+      const int v = i + (nx + 1) * j;
+      strip.V.row(v) << 0.125 * i / nx, 1.0 * j / ny, 0;
+      if (i == nx || j == ny) continue;
+      if ((i + j) % 2 == 0) {
+        strip.E.row(e++) << v, v + 1, v + nx + 2;
+        strip.E.row(e++) << v, v + nx + 2, v + nx + 1;
+      } else {
+        strip.E.row(e++) << v, v + 1, v + nx + 1;
+        strip.E.row(e++) << v + 1, v + nx + 2, v + nx + 1;
+      }
+    }
+  }
+  const double end = 1.0 / ny, angle = kTurn / 4, arc = 1 - 2 * end, radius = arc / angle;
+  Handle lower = region("lower", {0, 0, 0}, {1, end, 1}), upper = region("upper", {0, 1 - end, 0}, {1, 1, 1});
+  upper.angle = angle;
+  upper.axis = {1, 0, 0};
+  upper.about = {0, 1 - end, 0};
+  upper.move = {0, radius * std::sin(angle) - arc, radius * (1 - std::cos(angle))};
+  const PoseSolution pose = solve_pose(
+      strip, model("{type: shell3d, stiffness: 10000, bending_stiffness: 0.01}"), std::vector{lower, upper});
+  EXPECT_LE(pose.iterations, 40 * pose.increments);
+  double worst = 0;
+  for (Eigen::Index v = 0; v < strip.V.rows(); ++v) {
+    const double s = strip.V(v, 1) - end, turned = std::clamp(s / radius, 0.0, angle);
+    if (s < 0 || s > arc) continue;
+    const Eigen::RowVector3d wanted(strip.V(v, 0), end + radius * std::sin(turned),
+                                    radius * (1 - std::cos(turned)));
+    worst = std::max(worst, (pose.V.row(v) - wanted).norm());
+  }
+  EXPECT_LE(worst, 0.01);
+}
+
 TEST(Pose, SaysWhatIsWrongWithHandles) {
   const SimMesh mesh = bar();
   const Error nothing = failure(mesh, {bottom(), region("handles[1]", {2, 2, 2}, {3, 3, 3})});
