@@ -6,13 +6,15 @@
 #include "sim/control/controllers/blend.h"
 #include "sim/control/controllers/hop.h"
 #include "sim/control/controllers/rest.h"
+#include "sim/control/controllers/roll.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 3> kControllers = {{
+constexpr std::array<ControllerEntry, 4> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
+    {"roll", roll_controller_schema, make_roll_controller},
     {"blend", blend_controller_schema, make_blend_controller},
 }};
 

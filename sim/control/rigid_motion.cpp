@@ -3,7 +3,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
+#include "common/matrix.h"
+
 namespace vivify::sim {
+
+double lowest_height(const Eigen::VectorXd& x, int d) {
+  return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d).col(1).minCoeff();
+}
 
 Eigen::Vector3d centre_of_mass(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
   const int d = dimension_of(mass, x);

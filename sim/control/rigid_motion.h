@@ -15,6 +15,9 @@ inline int dimension_of(const Eigen::VectorXd& mass, const Eigen::VectorXd& x) {
   return static_cast<int>(x.size() / mass.size());
 }
 
+// Height of the lowest point of a flat vector with d coordinates per point.
+double lowest_height(const Eigen::VectorXd& x, int d);
+
 Eigen::Vector3d centre_of_mass(const Eigen::VectorXd& mass, const Eigen::VectorXd& x);
 Eigen::Matrix3d inertia_tensor(const Eigen::VectorXd& mass, const Eigen::VectorXd& x);
 Eigen::Vector3d angular_momentum(const Eigen::VectorXd& mass, const Eigen::VectorXd& x,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/control/heading.h"
 #include "sim/control/rigid_motion.h"
 
 namespace vivify::sim {
@@ -41,17 +42,16 @@ class HopController final : public Controller {
         thrust_s_(settings["thrust_s"].as_number()),
         land_s_(settings["land_s"].as_number()),
         upright_(settings["upright"].as_number()) {
-    const double heading = settings["heading_deg"].as_number() * std::numbers::pi / 180;
-    forward_ = Eigen::Vector3d(std::sin(heading), 0, std::cos(heading));
+    forward_ = heading_of(body, settings);
     face_heading_ = settings["face_heading"].as_bool();
-    heading_ = std::remainder(heading, 2 * std::numbers::pi);
+    heading_ = std::atan2(forward_.x(), forward_.z());
     take_off_ = std::sqrt(2 * body.gravity * settings["height"].as_number());
     const double flight = 2 * take_off_ / body.gravity;
     // The body travels in flight, and with half the speed while it pushes off.
     const double cycle = crouch_s_ + 0.5 * thrust_s_ + flight + land_s_;
     speed_ = settings["pace"].as_number() * cycle / (flight + 0.25 * thrust_s_);
     rest_centre_ = centre_of_mass(body.mass, body.rest);
-    rest_rise_ = rest_centre_.y() - lowest_vertex(body.rest);
+    rest_rise_ = rest_centre_.y() - lowest_height(body.rest, body.dimension());
     time_ = land_s_;
   }
 
@@ -160,14 +160,8 @@ class HopController final : public Controller {
     start_ = centre_of_mass(body_.mass, now.x);
     start_rate_ = centre_of_mass(body_.mass, now.v).y();
     // The ground may be anywhere: the centre stands above the lowest vertex as it does at rest.
-    if (phase == kCrouch || phase == kLand) ground_height_ = lowest_vertex(now.x) + rest_rise_;
-  }
-
-  double lowest_vertex(const Eigen::VectorXd& x) const {
-    double lowest = INFINITY;
-    const int d = body_.dimension();
-    for (Eigen::Index i = 1; i < x.size(); i += d) lowest = std::min(lowest, x[i]);
-    return lowest;
+    if (phase == kCrouch || phase == kLand)
+      ground_height_ = lowest_height(now.x, body_.dimension()) + rest_rise_;
   }
 
   void advance_phase(bool standing, const Observation& now) {
@@ -236,7 +230,7 @@ class HopController final : public Controller {
 
 Schema hop_controller_schema() {
   return object("Hops along a heading: crouch, thrust, flight, land.")
-      .field("heading_deg", number("Direction of travel: 0 is +z, 90 is +x.").unit("°").initially(0))
+      .field("heading_deg", heading_schema())
       .field("height",
              number("Rise of the centre of mass after take-off.").unit("m").above(0).initially(0.25))
       .field("pace", number("Average forward speed.").unit("m/s").at_least(0).initially(0.6))
@@ -263,16 +257,6 @@ Schema hop_controller_schema() {
 }
 
 std::unique_ptr<Controller> make_hop_controller(const ControlledBody& body, const Value& settings) {
-  if (!(body.gravity > 0)) {
-    throw Error(ErrorKind::usage, "a hop needs gravity that points down (-y)",
-                "change gravity or the controller", settings.where());
-  }
-  const double heading = settings["heading_deg"].as_number() * std::numbers::pi / 180;
-  if (body.dimension() == 2 && std::abs(std::sin(heading)) < 0.99) {
-    throw Error(ErrorKind::usage,
-                "a body of the plane travels along x: controller.heading_deg must be 90 or -90",
-                "90 is to the right (+x)", settings["heading_deg"].where());
-  }
   return std::make_unique<HopController>(body, settings);
 }
 
