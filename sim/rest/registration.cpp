@@ -34,7 +34,7 @@ Eigen::MatrixXd simplex_rotation(const Columns& posed, const Columns& rest) {
 // their product. Empty when they are not defined.
 Eigen::MatrixXd edge_frame(const Columns& x) {
   const Eigen::VectorXd e = (x.col(1) - x.col(0)).normalized();
-  if (!e.allFinite()) return {};
+  if (!(e.norm() > 0.5)) return {};
   if (x.rows() == 2) {
     Eigen::Matrix2d frame;
     frame << e[0], -e[1], e[1], e[0];
@@ -45,8 +45,12 @@ Eigen::MatrixXd edge_frame(const Columns& x) {
     return sign * edge.cross(arm).normalized();
   };
   Eigen::Vector3d n = normal(2, 1);
-  if (x.cols() == 4) n = (n + normal(3, -1)).normalized();
-  if (!n.allFinite() || n.norm() < 0.5) return {};
+  if (x.cols() == 4) {
+    const Eigen::Vector3d other = normal(3, -1);
+    if (!(n.norm() > 0.5) || !(other.norm() > 0.5)) return {};
+    n = (n + other).normalized();
+  }
+  if (!(n.norm() > 0.5)) return {};
   Eigen::Matrix3d frame;
   frame << e, n, Eigen::Vector3d(e).cross(n);
   return frame;

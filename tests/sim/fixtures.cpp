@@ -334,8 +334,9 @@ void set_motion(World& world, const Vector& x, const Vector& v) {
     Hdf5Reader reader(path);
     Hdf5Writer moving;
     moving.put("/step", reader.integer("/step"));
-    moving.put(group + "/x", RowMatrixXd(rows(x)));
-    moving.put(group + "/v", RowMatrixXd(rows(v)));
+    const Eigen::Index d = body.model().dimension();
+    moving.put(group + "/x", RowMatrixXd(x.reshaped<Eigen::RowMajor>(x.size() / d, d)));
+    moving.put(group + "/v", RowMatrixXd(v.reshaped<Eigen::RowMajor>(v.size() / d, d)));
     moving.put(group + "/restart/q", reader.vector(group + "/restart/q"));
     moving.put(group + "/restart/contact", reader.matrix(group + "/restart/contact"));
     moving.put(group + "/restart/controller", reader.vector(group + "/restart/controller"));
