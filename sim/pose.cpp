@@ -18,8 +18,9 @@ namespace {
 constexpr double kLargestTurn = 10 * std::numbers::pi / 180;  // of a handle in one increment, rad
 constexpr double kLargestMove = 0.1;                          // in one increment, of the body's diagonal
 constexpr double kLargestScale = 0.1;                         // in one increment, of the factor's logarithm
-constexpr int kMaxHalvings = 6;                               // of an increment
-constexpr double kSmallestElement = 0.01;                     // of its size at rest
+constexpr double kMaxIncrements = 2000;
+constexpr int kMaxHalvings = 6;            // of an increment
+constexpr double kSmallestElement = 0.01;  // of its size at rest
 constexpr double kSwelling = 0.01;      // the unit of force is what it takes to swell the body by this share
 constexpr double kTolerance = 1e-7;     // in that unit
 constexpr double kRegionMargin = 1e-9;  // of the bounding box: points on the face of a region belong to it
@@ -67,6 +68,7 @@ class Grip {
     for (Eigen::Index k = 0; k < d; ++k) about_[k] = about[k];
   }
 
+  const std::string& name() const { return handle_.name; }
   const std::vector<int>& vertices() const { return vertices_; }
 
   // How many increments the whole way takes.
@@ -186,7 +188,14 @@ class PoseSolver {
   PoseSolution solve() {
     const double diagonal = (rest_.V.colwise().maxCoeff() - rest_.V.colwise().minCoeff()).norm();
     double most = 1;
-    for (const Grip& grip : grips_) most = std::max(most, grip.increments(diagonal));
+    for (const Grip& grip : grips_) {
+      most = std::max(most, grip.increments(diagonal));
+      if (most <= kMaxIncrements) continue;
+      throw Error(ErrorKind::usage,
+                  grip.name() + " goes too far: " + number_text(std::ceil(most)) + " increments, and " +
+                      number_text(kMaxIncrements) + " are the most",
+                  "turns are cut into 10 degrees, ways into tenths of the body's diagonal");
+    }
     const StaticProblem problem = {model_.families, pattern_, S_, force_, held_};
     const Spread spread(rest_, held_);
     const double tolerance = kTolerance * unit_of_force();

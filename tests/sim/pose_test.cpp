@@ -216,6 +216,9 @@ TEST(Pose, SaysWhatIsWrongWithHandles) {
   Handle other = top();
   other.vertices = {99};
   EXPECT_THAT(failure(mesh, {other}).what(), HasSubstr("vertex 99"));
+  Handle endless = top();
+  endless.angle = 1e5;
+  EXPECT_THAT(failure(mesh, {bottom(), endless}).what(), HasSubstr("top goes too far"));
   EXPECT_EQ(failure(mesh, {}).kind(), ErrorKind::usage);
   EXPECT_EQ(failure(mesh, {bottom()}, "{type: shell3d}").kind(), ErrorKind::geometry);
 }
@@ -227,6 +230,38 @@ TEST(Pose, SaysHowFarItCame) {
   const Error error = failure(bar(), {bottom(), pushed, sides});
   EXPECT_EQ(error.kind(), ErrorKind::numerical);
   EXPECT_THAT(error.what(), HasSubstr("% of their way"));
+}
+
+// Violent handles: the pose is found, or the solver says that it was not; never a number that is none, never
+// a hang.
+TEST(Pose, SurvivesViolentHandles) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    CounterRng rng(seed);
+    const auto random = [&](double from, double to) {
+      return Eigen::Vector3d(rng.uniform(from, to), rng.uniform(from, to), rng.uniform(from, to));
+    };
+    const SimMesh mesh = sim_mesh(box_mesh({1, 4, 1}, {0.3, 1, 0.3}, {0, 0, 0}));
+    Handle wild = top();
+    wild.min.y() = rng.uniform(0.6, 1);
+    wild.angle = rng.uniform(-0.6, 0.6) * kTurn;
+    wild.axis = random(-1, 1);
+    wild.move = random(-0.5, 0.5);
+    wild.scale = random(0.6, 1.8);
+    const double stiffness = std::pow(10, rng.uniform(3, 7));
+    const std::string material = "{type: " + std::string(seed % 2 == 0 ? "solid3d" : "solid3d_stvk") +
+                                 ", stiffness: " + std::to_string(stiffness) +
+                                 ", volume_stiffness: " + std::to_string(stiffness) + "}";
+    try {
+      const PoseSolution pose = solve_pose(mesh, model(material), std::vector{bottom(), wild}, {0, -9.81, 0});
+      EXPECT_TRUE(pose.V.allFinite()) << seed;
+      EXPECT_GT(pose.smallest_element, 0) << seed;
+      ++found;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::numerical) << seed << " " << error.what();
+    }
+  }
+  EXPECT_GE(found, 3);
 }
 
 TEST(Pose, IsTheSameEveryTime) {
