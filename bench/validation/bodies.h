@@ -63,7 +63,7 @@ void hold(const std::vector<bool>& held, int dimension, double diagonal, sim::Sy
 // `tolerance` times the sum of all applied, or what rounding leaves. Throws Error(numerical) when it is not
 // reached.
 Vector equilibrium(const sim::BodyModel& body, const Vector& x, const Vector& force,
-                   const std::vector<bool>& held, double tolerance = 1e-7);
+                   const std::vector<bool>& held, double tolerance = 1e-9);
 
 // Lowest angular frequency (rad/s) of the body at rest with held vertices, by inverse iteration.
 double lowest_frequency(const sim::BodyModel& body, const std::vector<bool>& held);

@@ -126,7 +126,7 @@ Result integrator(Effort effort) {
         const double now = energy(body, body.S0, motion.x()) + motion.kinetic_energy();
         rise.add((now - last) / start);
         last = now;
-        if (n <= 40) curve.add(n / 100.0, now / start);
+        if (n <= 40 && n % 2 == 0) curve.add(n / 100.0, now / start);
       }
       drift.add((momentum(motion.v()) - before).norm() / before.norm());
       fall.curves.push_back(std::move(curve));

@@ -60,7 +60,7 @@ End relax(const sim::BodyModel& body, const Vector& x) {
   const int d = body.dimension();
   const sim::StaticProblem problem{body.elastic, *body.pattern, body.S0, Vector::Zero(x.size()),
                                    std::vector<bool>(static_cast<std::size_t>(x.size() / d), false)};
-  const sim::StaticSolution solution = solve_static(problem, x, 1e-9 * kStretch);
+  const sim::StaticSolution solution = solve_static(problem, x, 1e-12 * kStretch);
   SimMesh deformed = body.mesh;
   deformed.V = Eigen::Map<const RowMatrixXd>(solution.x.data(), x.size() / d, d);
   return {solution.x, element_sizes(deformed)[0] < 0, solution.converged};
@@ -142,7 +142,7 @@ Result inversion(Effort effort) {
   const int starts = effort == Effort::full ? 400 : 60;
   for (const Element& element : elements()) {
     result.figure(element.name + ": largest k_size/k_l with a stable inverted state", threshold(element),
-                  element.threshold, 2e-3);
+                  element.threshold, 1e-5);
     result.figure(element.name + ": share of starts that stay inverted at 1.02 of it",
                   share_inverted(element, 1.02 * element.threshold, starts), 0, 0);
     Curve share{element.name}, line{element.name + ": bound", {}, {}, true};

@@ -18,6 +18,7 @@ constexpr std::array kProblems = {
     ProblemEntry{"large_deflection", large_deflection},
     ProblemEntry{"buckling", buckling},
     ProblemEntry{"inversion", inversion},
+    ProblemEntry{"interpolation", interpolation},
 };
 
 }  // namespace

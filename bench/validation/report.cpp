@@ -23,7 +23,7 @@ std::string exact(double value) {
 
 // The commands of one plot, with its data inline.
 std::string gnuplot_script(const Plot& plot, const std::filesystem::path& svg) {
-  std::string script = "set terminal svg size 720,450 font 'sans-serif,12' name 'plot' background 'white'\n";
+  std::string script = "set terminal svg size 720,450 font 'sans-serif,12' background 'white'\n";
   script += "set output '" + svg.string() + "'\nset encoding utf8\nset termoption noenhanced\n";
   script += "set title \"" + plot.title + "\"\nset xlabel \"" + plot.x_label + "\"\nset ylabel \"" +
             plot.y_label + "\"\n";
