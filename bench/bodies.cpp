@@ -258,7 +258,7 @@ SimMesh closed_rod(int n, double width, double height) {
   const double around = 2 * (width + height);
   for (int i = 0; i < n; ++i) {
     double s = around * i / n;
-    Eigen::RowVector2d at;
+    auto at = mesh.V.row(i);
     if (s < width) {
       at << s, 0;
     } else if ((s -= width) < height) {
@@ -268,7 +268,6 @@ SimMesh closed_rod(int n, double width, double height) {
     } else {
       at << 0, height - (s - width);
     }
-    mesh.V.row(i) = at;
     mesh.E.row(i) << i, (i + 1) % n;
   }
   stand(mesh.V);
