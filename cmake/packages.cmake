@@ -29,6 +29,17 @@ add_library(tetgen::tetgen INTERFACE IMPORTED)
 target_include_directories(tetgen::tetgen INTERFACE ${TETGEN_INCLUDE_DIR})
 target_link_libraries(tetgen::tetgen INTERFACE ${TETGEN_LIBRARY})
 
+# The reference of the step methods, for tests and benchmarks only. Its pkg-config file names Fortran libraries that the
+# shared library brings along by itself.
+if(VIVIFY_BUILD_TESTS OR VIVIFY_BUILD_BENCH)
+  find_path(IPOPT_INCLUDE_DIR IpTNLP.hpp PATH_SUFFIXES coin coin-or REQUIRED)
+  find_library(IPOPT_LIBRARY ipopt REQUIRED)
+  add_library(ipopt::ipopt INTERFACE IMPORTED)
+  target_include_directories(ipopt::ipopt INTERFACE ${IPOPT_INCLUDE_DIR})
+  target_compile_definitions(ipopt::ipopt INTERFACE HAVE_CSTDDEF)
+  target_link_libraries(ipopt::ipopt INTERFACE ${IPOPT_LIBRARY})
+endif()
+
 if(VIVIFY_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
