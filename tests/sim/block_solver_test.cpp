@@ -52,6 +52,25 @@ TEST(BlockSolver, IsTheReducedObjectiveAtAFeasiblePoint) {
   }
 }
 
+// The exact Hessian need not be definite; the step goes downhill nevertheless.
+TEST(BlockSolver, ReflectsNegativeCurvature) {
+  int indefinite = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Linearisation l(seed, 0.5);
+    const BlockSolver block(*l.step.problem, l.at, l.rest, true, *l.step.workspace);
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(block.K());
+    if (eigen.eigenvalues().minCoeff() > -1e-3 * eigen.eigenvalues().maxCoeff()) continue;
+    ++indefinite;
+    const Vector& g = block.reduced_gradient();
+    const Vector curvature = eigen.eigenvalues().cwiseAbs(), along = eigen.eigenvectors().transpose() * g;
+    const Vector step = -eigen.eigenvectors() * along.cwiseQuotient(curvature);
+    EXPECT_LE(relative(block.step_q(0), step), 1e-6) << "seed " << seed;
+    EXPECT_LT(block.step_q(0).dot(g), 0);
+    EXPECT_NEAR(block.decrement(), -0.5 * g.dot(step), 1e-9 * block.decrement());
+  }
+  EXPECT_GE(indefinite, 1);
+}
+
 TEST(BlockSolver, DampingTurnsTheStepToTheGradient) {
   Linearisation l(3, 1);
   const BlockSolver block(*l.step.problem, l.at, l.rest, false, *l.step.workspace);

@@ -221,7 +221,7 @@ TEST_P(StepConformance, MethodsFindTheSameOptimum) {
         EXPECT_GE(solution.rest.smallest_element, kSmallestRest) << name;
         solutions.push_back(solution);
         EXPECT_NEAR(solution.objective, solutions[0].objective, 1e-6 * solutions[0].objective) << name;
-        EXPECT_LE((solution.at.x - solutions[0].at.x).lpNorm<Eigen::Infinity>(), 1e-4 * step.body.height)
+        EXPECT_LE((solution.at.x - solutions[0].at.x).lpNorm<Eigen::Infinity>(), 5e-5 * step.body.height)
             << name;
       }
     }
