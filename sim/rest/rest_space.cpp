@@ -48,9 +48,20 @@ const RestSpaceEntry& rest_space_entry(std::string_view name) {
 Eigen::MatrixXd shape_changing_basis(const Eigen::VectorXd& X0, const Eigen::MatrixXd& L, int dimension) {
   const Eigen::Index parameters = L.cols();
   const Eigen::MatrixXd rigid = rigid_motions(X0, dimension);
+  // Parameters that do nothing: with L P = Q [R₁ R₂] they are P [−R₁⁻¹ R₂; 1].
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> least_squares(L);
+  least_squares.setThreshold(1e-10);
+  const Eigen::Index rank = least_squares.rank();
+  Eigen::MatrixXd null_parameters =
+      Eigen::MatrixXd::Identity(parameters, parameters).rightCols(parameters - rank);
+  if (rank < parameters) {
+    const auto R = least_squares.matrixR();
+    null_parameters.topRows(rank) = -R.topLeftCorner(rank, rank)
+                                         .triangularView<Eigen::Upper>()
+                                         .solve(R.topRightCorner(rank, parameters - rank));
+    null_parameters = (least_squares.colsPermutation() * null_parameters).eval();
+  }
   // Parameters that produce each rigid motion, kept where L really can produce it.
-  const auto least_squares = L.colPivHouseholderQr();
-  Eigen::MatrixXd null_parameters(parameters, 0);
   for (Eigen::Index motion = 0; motion < rigid.cols(); ++motion) {
     const Eigen::VectorXd p = least_squares.solve(rigid.col(motion));
     if ((L * p - rigid.col(motion)).norm() < 1e-6 * rigid.col(motion).norm()) {

@@ -109,8 +109,8 @@ double unit_length(const RowMatrixXd& V);
 // Groups of examples as lists of their parameters.
 std::vector<std::vector<int>> example_groups(const std::vector<ExamplePose>& examples);
 
-// The orthonormal complement of the parameters whose L p is a rigid motion of X₀ (translation or linearised
-// rotation). X₀ is flat with `dimension` coordinates per point.
+// The orthonormal complement of the parameters whose L p is zero or a rigid motion of X₀ (translation or
+// linearised rotation). X₀ is flat with `dimension` coordinates per point.
 Eigen::MatrixXd shape_changing_basis(const Eigen::VectorXd& X0, const Eigen::MatrixXd& L, int dimension);
 
 }  // namespace vivify::sim

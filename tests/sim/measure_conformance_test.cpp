@@ -159,6 +159,16 @@ TEST_P(MeasureConformance, ThirdDerivatives) {
   }
 }
 
+// ∇³s[l] m = ∇³s[m] l.
+TEST_P(MeasureConformance, ThirdDerivativesAreSymmetric) {
+  Sample s(GetParam(), 8);
+  const Vector none = Vector::Zero(s.w.size()), m = random_vector(s.x.size(), 1, s.rng);
+  const Matrix along_l = s.third(none, s.w, none);
+  const Vector both = along_l * m, l = s.l;
+  s.l = m;
+  EXPECT_LE((s.third(none, s.w, none) * l - both).norm(), 1e-13 * along_l.norm() * m.norm());
+}
+
 TEST_P(MeasureConformance, RigidMotionsChangeNothing) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     Sample s(GetParam(), seed);

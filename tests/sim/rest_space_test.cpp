@@ -101,5 +101,29 @@ TEST(CageSpace, FewerRigidMotionsAreRemovedWhenTheCageCannotMakeThem) {
   EXPECT_NEAR(std::abs(basis(3, 0)), 1, 1e-12);
 }
 
+// A level rod sees only where along it the cage pulls and how far: all that is left is to stretch it.
+TEST(CageSpace, RemovesParametersWithoutEffect) {
+  const ModelEntry& rod = model_entry(settings(model_schema(), "{type: rod2d}"));
+  BodyCase level{rod, rest_space_entry("cage"), small_meshes(2, 2).front()};
+  level.mesh.mesh.V.col(1).setZero();
+  BodyInput input = body_input(level);
+  const Matrix across =
+      (Matrix(1, 4) << 0.3, 0.3, 0.7, 0.7).finished();  // shares of the lower and upper corners
+  for (Eigen::Index i = 0; i < input.cage_weights.rows(); ++i) {
+    const double t = (level.mesh.mesh.V(i, 0) + 0.5) / 1.0;
+    input.cage_weights.row(i) = across.cwiseProduct((Matrix(1, 4) << 1 - t, t, 1 - t, t).finished());
+  }
+  const BodyModel body = make_body_model(input, {});
+  ASSERT_EQ(body.rest->free_parameters(), 1);
+  const ShapeSpace& space = dynamic_cast<const ShapeSpace&>(*body.rest);
+  const Vector stretch = space.L().col(0);
+  for (Eigen::Index i = 0; i + 2 < stretch.size(); i += 2) {
+    EXPECT_NEAR(stretch[i + 1], 0, 1e-14);
+    const double slope =
+        (stretch[i + 2] - stretch[i]) / (level.mesh.mesh.V(i / 2 + 1, 0) - level.mesh.mesh.V(i / 2, 0));
+    EXPECT_GT(std::abs(slope), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace vivify::sim
