@@ -17,6 +17,7 @@
 #include "bench/timing.h"
 #include "common/file.h"
 #include "common/hdf5_file.h"
+#include "common/memory.h"
 #include "common/text.h"
 #include "sim/contact/contact_points.h"
 #include "sim/settings.h"
@@ -268,6 +269,7 @@ void run(const Case& tested) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vivify::keep_freed_memory();
   try {
     if (argc > 1) {
       run(load_body(argv[1]));

@@ -9,6 +9,7 @@
 
 #include "bench/bodies.h"
 #include "bench/timing.h"
+#include "common/memory.h"
 #include "sim/world.h"
 
 using namespace vivify;
@@ -185,6 +186,7 @@ Result simulate(const sim::BodyInput& input, int rate) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vivify::keep_freed_memory();
   std::printf("%-16s %5s %4s %-9s %-8s %9s", "row", "DOF", "par", "space", "model", "paper s/s");
   for (const int rate : kStepsPerSecond)
     std::printf(" | h = 1/%-3d s/s  ratio   it  other  rise  path", rate);
