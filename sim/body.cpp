@@ -25,7 +25,7 @@ constexpr int kStaticStart = 16;           // increments of the parameters to th
 constexpr int kMaxStepSplits = 4;          // a step that cannot be solved is cut in halves so many times
 constexpr double kTimeLimit = 100;  // of the median of the last steps: a step that takes longer is given up
 constexpr double kLeastTimeLimit = 10;  // s; a busy machine is no reason to stop
-constexpr std::size_t kTimedSteps = 50;
+constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
   return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d);
@@ -46,6 +46,30 @@ double regularizer_share(const MeasureFamily& family, const Value& regularizer) 
   }
 }
 
+// Throws Error(geometry) unless every element is of vertices with finite coordinates and every vertex of an
+// element.
+void check_mesh(const std::string& body, const SimMesh& mesh) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorKind::geometry, "body '" + body + "': " + what, "mesh the character again");
+  };
+  if (mesh.V.rows() == 0 || mesh.E.rows() == 0) fail("the simulation mesh has no elements");
+  std::vector<bool> used(static_cast<std::size_t>(mesh.V.rows()), false);
+  for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+    for (const int v : mesh.E.row(e)) {
+      if (v < 0 || v >= mesh.V.rows()) {
+        fail("element " + std::to_string(e) + " of the simulation mesh has vertex " + std::to_string(v) +
+             " of " + std::to_string(mesh.V.rows()));
+      }
+      used[static_cast<std::size_t>(v)] = true;
+    }
+  }
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+    const std::string vertex = "vertex " + std::to_string(v) + " of the simulation mesh";
+    if (!mesh.V.row(v).allFinite()) fail(vertex + " has coordinates that are not finite");
+    if (!used[static_cast<std::size_t>(v)]) fail(vertex + " belongs to no element: it has no mass");
+  }
+}
+
 }  // namespace
 
 BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings) {
@@ -57,6 +81,7 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
   BodyModel body;
   body.name = input.name;
   body.mesh = input.rest;
+  check_mesh(body.name, body.mesh);
   const int d = body.dimension();
   const RowMatrixXd& V = body.mesh.V;
   ElasticModel elastic = build_model(model, body.mesh, space.layout, input.model);
@@ -276,11 +301,13 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
     q_ = before.q;
     contact_memory_ = before.contacts;
   }
-  if (!solved && workspace_->expired()) {
+  // Also of a step that was solved: methods that ran out of time stop early, and results must not depend on
+  // the clock.
+  if (workspace_->expired()) {
     throw Error(ErrorKind::numerical,
                 "body '" + model_.name + "', step " + std::to_string(step) + ": not solved in " +
                     number_text(kTimeLimit) + " times the time of the steps before",
-                "raise frames.steps_per_frame, or make the model stiffer");
+                "raise frames.steps_per_frame, ask for slower motion, or make the model stiffer");
   }
   if (!solved) {
     throw Error(ErrorKind::numerical,
@@ -288,7 +315,7 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
                     ": the equations of motion were not solved (residual " +
                     number_text(record.residual_rel) + " of the weight, in steps down to a " +
                     std::to_string(1 << kMaxStepSplits) + "th)",
-                "raise frames.steps_per_frame, or make the model stiffer");
+                "raise frames.steps_per_frame, ask for slower motion, or make the model stiffer");
   }
 
   record.step = step;
@@ -314,7 +341,7 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
 
 // None until enough steps tell how long one takes.
 std::chrono::steady_clock::time_point Body::step_deadline() const {
-  if (step_seconds_.size() < kTimedSteps) return std::chrono::steady_clock::time_point::max();
+  if (step_seconds_.size() < kFewestTimedSteps) return std::chrono::steady_clock::time_point::max();
   std::vector<double> sorted = step_seconds_;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());

@@ -154,6 +154,10 @@ SurfacePoint Collider::nearest(const Eigen::Vector3d& point) const {
   NearestQuery query{surface_, point};
   Eigen::BVMinimize(tree_->hierarchy, query);
   const int f = query.best_face;
+  if (f < 0) {
+    throw Error(ErrorKind::numerical, "collider '" + name_ + "': a point is at no finite distance",
+                "the simulation has run away: raise frames.steps_per_frame");
+  }
   const int feature = query.best.feature;
   Eigen::Vector3d pseudo_normal = tree_->face_normals[f];
   bool rim = false;

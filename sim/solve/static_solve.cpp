@@ -96,7 +96,7 @@ StaticSolution solve_static(const StaticProblem& problem, Eigen::VectorXd x, dou
   double damping = kLeastShift;  // added to the diagonal of the stiffness, in units of its largest entry
   for (;; ++solution.iterations) {
     solution.residual = now.gradient.size() == 0 ? 0 : now.gradient.lpNorm<Eigen::Infinity>();
-    solution.converged = solution.residual <= tolerance;
+    solution.converged = solution.residual <= tolerance && now.gradient.allFinite();
     if (solution.converged || solution.iterations == kMaxIterations || !std::isfinite(now.energy)) break;
 
     const double unit = solver.stiffness(x, D);
