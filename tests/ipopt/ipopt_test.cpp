@@ -74,6 +74,20 @@ TEST_P(IpoptTest, SqpReachesTheSamePoint) {
   EXPECT_GT(eigen.eigenvalues().minCoeff(), 0);
 }
 
+// As the program runs, only longer: to the accuracy that is asked for.
+TEST_P(IpoptTest, GaussNewtonReachesTheSameObjective) {
+  const Eigen::VectorXd start =
+      start_feasibly(problem, step.q, step.x, sim::kStartTolerance, *step.workspace).at.x;
+  const Solution theirs = Solver(problem).solve(start, step.q);
+  step.body.solver.exact_hessian = false;
+  step.body.solver.decrement =
+      0.5 * kSameObjective * theirs.objective / (step.body.weight * step.body.height);
+  const StepSolution ours = solve_sqp(problem, step.q, step.x, *step.workspace);
+  EXPECT_TRUE(ours.exact);
+  EXPECT_TRUE(ours.optimal);
+  EXPECT_NEAR(ours.objective, theirs.objective, kSameObjective * theirs.objective);
+}
+
 TEST_P(IpoptTest, IpoptStaysAtTheSolutionOfTheSqp) {
   const StepSolution ours = solve_sqp(problem, step.q, step.x, *step.workspace);
   const Solution theirs = Solver(problem).solve(ours.at.x, ours.rest.q);
