@@ -388,5 +388,35 @@ INSTANTIATE_TEST_SUITE_P(
                     Interruption{"ctrl_c_in_render", "render/tiny.0003.exr", SIGINT, 130}),
     [](const auto& parameter) { return parameter.param.name; });
 
+// A flat body with example poses and several steps per frame, killed or stopped again and again.
+TEST(Run, SimulationInterruptedManyTimesEndsWithTheSameBytes) {
+  const TinyScene place;
+  const auto simulate = [&](const char* out, const ProgramOptions& program = {}) {
+    return vivify({"simulate", std::string(VIVIFY_SOURCE_DIR) + "/configs/figure3_bent.yaml", "-o",
+                   place.out(out).string(), "--set", "frames.duration_s=1.5", "--progress=none"},
+                  program);
+  };
+  ASSERT_EQ(simulate("straight").code, 0);
+  const auto frames = [&] {
+    int count = 0;
+    const auto name = [&] { return (count < 9 ? "000" : "00") + std::to_string(count + 1) + ".h5"; };
+    while (fs::exists(place.out("broken") / "sim" / "frames" / name())) ++count;
+    return count;
+  };
+  int interrupted = 0;
+  for (int run = 0; run < 6; ++run) {
+    ProgramOptions program;
+    program.signal = run % 2 == 0 ? SIGKILL : SIGTERM;
+    program.interrupt_when = [&, enough = frames() + 1 + run] { return frames() >= enough; };
+    const Outcome outcome = simulate("broken", program);
+    interrupted += outcome.code == (program.signal == SIGKILL ? 128 + SIGKILL : 75);
+  }
+  EXPECT_GE(interrupted, 3);
+  ASSERT_EQ(simulate("broken").code, 0);
+  EXPECT_THAT(differences(promised_files(place.out("broken")), promised_files(place.out("straight"))),
+              testing::IsEmpty());
+  EXPECT_GE(promised_files(place.out("broken")).size(), 36u);
+}
+
 }  // namespace
 }  // namespace vivify::pipeline
