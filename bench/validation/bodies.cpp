@@ -103,9 +103,9 @@ StepState::StepState(const Sample& sample, const std::string& rest_space, std::u
   const double reach = body.rest->unit() == 1 ? 0.3 : 0.01;
   q = random_vector(body.rest->free_parameters(), reach, rng);
   std::vector<Goal> wanted;
-  for (int axis = 0; axis < body.dimension(); ++axis) {
-    wanted.push_back({centre_of_mass_weights(body.mass, Eigen::Vector3d::Unit(axis), body.dimension()), 0,
-                      std::sqrt(body.mass.sum()), 0, rng.uniform(-1, 1)});
+  for (int i = 0; i < 3; ++i) {
+    const double weight = std::sqrt(10 * body.mass.sum());
+    wanted.push_back({random_vector(X.size(), 1, rng), 0, weight, 0, rng.uniform(-1, 1)});
   }
   goals = make_goals(wanted, x_n, h);
   problem =

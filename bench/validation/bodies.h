@@ -38,8 +38,8 @@ RowMatrixXd bent_pose(const SimMesh& mesh, double curvature);
 // Independent uniform numbers in [−reach, reach).
 Vector random_vector(Eigen::Index size, double reach, CounterRng& rng);
 
-// A step of a sample in a random state, pressed out of shape, with goals for its centre of mass and no
-// contact.
+// A step of a sample in a random state, pressed out of shape, without contact, with three goals for random sums
+// of coordinates (its centre of mass cannot be controlled in the air).
 struct StepState {
   StepState(const Sample& sample, const std::string& rest_space, std::uint64_t seed);
   StepState(const StepState&) = delete;

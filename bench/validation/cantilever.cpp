@@ -20,8 +20,7 @@ std::vector<Study> studies(bool full) {
       full ? std::vector<double>{2, 4, 8, 16, 32} : std::vector<double>{2, 4, 8};
   const std::vector<double> space = full ? std::vector<double>{2, 4, 6, 8, 12} : std::vector<double>{2, 4, 6};
   return {
-      {"rod2d", full ? std::vector<double>{5, 10, 20, 40, 80, 160} : std::vector<double>{10, 20, 40}, 100,
-       1e-3},
+      {"rod2d", full ? std::vector<double>{5, 10, 20, 40, 80} : std::vector<double>{10, 20, 40}, 20, 1e-3},
       {"solid2d", plane, 20, 0.01},
       {"solid2d_printed", plane, 20, 0.01},
       {"shell3d", full ? std::vector<double>{2, 4, 8, 16} : std::vector<double>{2, 4, 8}, 10, 0.03},

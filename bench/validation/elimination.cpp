@@ -49,7 +49,8 @@ Difference compare(const StepState& state, bool exact) {
   Vector ours(n + m);
   ours << dx, dq;
   Difference difference;
-  difference.K.add((block.K() - K).norm() / K.norm());
+  // Beside the part that comes from the motion: the regulariser is on both sides the same sum.
+  difference.K.add((block.K() - K).norm() / (K - problem.regularizer_gauss_newton(rest)).norm());
   // Where the exact K is indefinite, its negative curvature is reflected: another step, on purpose.
   if (Eigen::LLT<Matrix>(K).info() == Eigen::Success) {
     difference.step.add((ours - solution.head(n + m)).norm() / solution.head(n + m).norm());
