@@ -92,7 +92,7 @@ TEST_P(IpoptTest, IpoptStaysAtTheSolutionOfTheSqp) {
   const StepSolution ours = solve_sqp(problem, step.q, step.x, *step.workspace);
   const Solution theirs = Solver(problem).solve(ours.at.x, ours.rest.q);
   EXPECT_TRUE(theirs.converged) << theirs.status;
-  EXPECT_LE(theirs.iterations, 2);
+  EXPECT_LE((ours.at.x - theirs.x).lpNorm<Eigen::Infinity>(), kSamePlace * step.body.height);
   EXPECT_NEAR(theirs.objective, ours.objective, 1e-8 * ours.objective);
 }
 
