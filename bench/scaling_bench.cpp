@@ -20,8 +20,10 @@ using namespace vivify::bench;
 
 namespace {
 
-constexpr double kBudget = 3;  // s of steps per size
-constexpr int kMostSteps = 48, kLeastSteps = 4;
+constexpr int kSteps = 4;  // of every body, from the start
+constexpr double kEnough =
+    1;  // s; small bodies start over until they took that long, and their median counts
+constexpr int kMostRuns = 31;
 
 struct Cost {
   double set_up = 0, step = 0, iterations = 0;  // s, s
@@ -33,20 +35,22 @@ Cost measure(const SimMesh& mesh, const std::string& model, bool controlled) {
   Cost cost;
   const std::string controller =
       controlled ? "{type: hop, heading_deg: 90, height: 0.2, pace: 0.5, crouch_s: 0.01, thrust_s: 1}" : "{}";
-  std::unique_ptr<sim::World> world;
-  cost.set_up = seconds_of([&] {
-    world = std::make_unique<sim::World>(std::vector{body_input("body", mesh, model, controller)}, ground(),
-                                         sim::WorldSettings{});
-  });
   std::vector<double> times;
-  double spent = 0;
-  for (int step = 0; step < kMostSteps && (step < kLeastSteps || spent < kBudget); ++step) {
-    times.push_back(seconds_of([&] { world->step(); }));
-    cost.iterations += world->records().back().iterations;
-    spent += times.back();
+  for (double spent = 0; times.empty() || (spent < kEnough && times.size() < kMostRuns);
+       spent += times.back()) {
+    std::unique_ptr<sim::World> world;
+    cost.set_up = seconds_of([&] {
+      world = std::make_unique<sim::World>(std::vector{body_input("body", mesh, model, controller)}, ground(),
+                                           sim::WorldSettings{});
+    });
+    times.push_back(seconds_of([&] {
+      for (int step = 0; step < kSteps; ++step) world->step();
+    }));
+    cost.iterations = 0;
+    for (const sim::StepRecord& record : world->records()) cost.iterations += record.iterations;
   }
-  cost.step = mean(times);
-  cost.iterations /= static_cast<double>(times.size());
+  cost.step = median(times) / kSteps;
+  cost.iterations /= kSteps;
   return cost;
 }
 
@@ -129,10 +133,10 @@ int main(int argc, char** argv) {
   const double largest = argc > 1 ? std::atof(argv[1]) : 1e9;
   try {
     std::vector<SimMesh> boxes, rectangles;
-    for (const int n : {1, 3, 5, 7, 11, 16, 23}) {  // 2 n cells high, n by ¾ n wide
+    for (const int n : {2, 3, 5, 7, 11, 17, 27}) {  // 2 n cells high, n by ¾ n wide
       boxes.push_back(box(n, 2 * n, std::max(1, 3 * n / 4), 0.5 / n));
     }
-    for (const int n : {4, 9, 16, 28, 50, 89, 158}) {
+    for (const int n : {5, 9, 16, 28, 50, 89, 158}) {
       rectangles.push_back(rectangle(n, 2 * n, 0.5 / n));
     }
     run("solids of space: boxes, 24 parameters", "solid3d", boxes, largest);

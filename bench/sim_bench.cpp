@@ -201,7 +201,7 @@ void run(const Case& tested) {
   const Body& body = world.body(0);
   const BodyModel& model = body.model();
   const std::vector<Collider> colliders = ground();
-  std::vector<double> iterations, iteration, factorisation, assembly, regularizer, over;
+  std::vector<double> iterations, tilt, iteration, factorisation, assembly, regularizer, over;
   std::vector<double> all_controlled, controlled, passive, ratio;
   for (int step = 0; step < steps; ++step) {
     if (step % interval == interval / 2) {
@@ -231,6 +231,7 @@ void run(const Case& tested) {
     }
     all_controlled.push_back(seconds_of([&] { world.step(); }));
     iterations.push_back(world.records().back().iterations);
+    tilt.push_back(world.records().back().tilt_deg);
   }
   std::filesystem::remove(saved);
 
@@ -250,6 +251,7 @@ void run(const Case& tested) {
               model.contact_points.size());
   std::printf("  steps of 1/%.0f s, iterations each       %d, mean %.2f, p95 %.0f\n", 1 / settings.h, steps,
               mean(iterations), quantile(iterations, 0.95));
+  std::printf("  tilt, median and largest               %.0f°, %.0f°\n", median(tilt), quantile(tilt, 1));
   std::printf("  one iteration                          %.3f ms\n", 1e3 * whole);
   std::printf("  over factorisation of D + %d solves     %.2f\n", solves, median(over));
   std::printf("    factorisation and solves             %.0f %%\n", share(factorisation));
