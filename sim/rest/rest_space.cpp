@@ -32,7 +32,8 @@ Eigen::MatrixXd rigid_motions(const Eigen::VectorXd& X0, int d) {
     for (int axis = 0; axis < d; ++axis) rigid(d * i + axis, axis) = 1;
     for (int k = d; k < rigid.cols(); ++k) {
       const Eigen::Vector3d axis = Eigen::Vector3d::Unit(d == 2 ? 2 : k - d);
-      rigid.block(d * i, k, d, 1) = axis.cross(arm).head(d);
+      const Eigen::Vector3d motion = axis.cross(arm);
+      for (int n = 0; n < d; ++n) rigid(d * i + n, k) = motion[n];
     }
   }
   return rigid;

@@ -463,7 +463,7 @@ RandomStep::RandomStep(const BodyCase& tested, const Scene& scene, std::uint64_t
   // What the points remember: every third one has just arrived, the others are 0.3 or 1.7 slip limits from
   // their anchors (with unlimited friction: as far, of the limit for μ = 1).
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  normal.head(d) = tilt.col(1);
+  for (int n = 0; n < d; ++n) normal[n] = tilt(n, 1);
   colliders = one(plane(friction, normal));
   std::vector<ContactMemory> memory(static_cast<std::size_t>(body.contact_points.size()));
   for (int i = 0; i < body.contact_points.size(); ++i) {
