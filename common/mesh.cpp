@@ -22,17 +22,7 @@ double signed_volume(const TriangleMesh& mesh) {
   return six_volumes / 6;
 }
 
-Eigen::VectorXd tet_volumes(const TetMesh& mesh) {
-  Eigen::VectorXd volumes(mesh.T.rows());
-  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-    const Eigen::Vector3d o = mesh.V.row(mesh.T(t, 0));
-    const Eigen::Vector3d a = mesh.V.row(mesh.T(t, 1)).transpose() - o;
-    const Eigen::Vector3d b = mesh.V.row(mesh.T(t, 2)).transpose() - o;
-    const Eigen::Vector3d c = mesh.V.row(mesh.T(t, 3)).transpose() - o;
-    volumes[t] = a.dot(b.cross(c)) / 6;
-  }
-  return volumes;
-}
+Eigen::VectorXd tet_volumes(const TetMesh& mesh) { return element_sizes(sim_mesh(mesh)); }
 
 SimMesh sim_mesh(const TetMesh& mesh) { return {mesh.V, mesh.T}; }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/error.h"
 #include "common/parallel.h"
 #include "common/text.h"
 
@@ -79,6 +80,31 @@ std::string list_some(const std::string& what, const std::vector<int>& indices) 
   for (const std::string& word : words) text += word + ", ";
   text.resize(text.size() - 2);
   return text + " and " + std::to_string(indices.size() - kShown) + " more";
+}
+
+void require_enclosed(const std::string& name, const RowMatrixXd& points, double clearance,
+                      const std::function<std::vector<int>(double)>& not_inside) {
+  const auto fail = [&](const std::string& problem, const std::string& hint) {
+    throw Error(ErrorKind::geometry, name + " cannot be used: " + problem, hint);
+  };
+  const std::vector<int> outside = not_inside(0);
+  if (!outside.empty()) {
+    std::string place;
+    for (const double coordinate : points.row(outside[0])) {
+      place += (place.empty() ? "(" : ", ") + number_text(coordinate);
+    }
+    fail(std::to_string(outside.size()) + " of " + std::to_string(points.rows()) +
+             " vertices of the character are not strictly inside: " + list_some("vertices", outside) +
+             ", vertex " + std::to_string(outside[0]) + " at " + place + ")",
+         "enlarge the cage there");
+  }
+  if (!(clearance > 0)) return;
+  const std::vector<int> close = not_inside(clearance);
+  if (!close.empty()) {
+    fail(std::to_string(close.size()) + " vertices of the character are nearer to it than " +
+             number_text(clearance) + " m: " + list_some("vertices", close),
+         "enlarge the cage there, or ask for less clearance");
+  }
 }
 
 }  // namespace vivify::meshing

@@ -1,6 +1,8 @@
 // Where points lie relative to a closed triangle surface.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "common/mesh.h"
@@ -21,6 +23,11 @@ double distance_to(const TriangleMesh& surface, const Eigen::Vector3d& p);
 // Indices of the points that are not inside the closed outward surface, or nearer to it than `clearance`
 // (metres).
 std::vector<int> points_not_inside(const TriangleMesh& surface, const Points& points, double clearance = 0);
+
+// Throws Error(geometry) that names some of the points (#P by 2 or 3) when they are not all inside the cage
+// `name`, with `clearance` (metres). `not_inside(clearance)` gives the indices of those that are not.
+void require_enclosed(const std::string& name, const RowMatrixXd& points, double clearance,
+                      const std::function<std::vector<int>(double)>& not_inside);
 
 // "vertices 3, 7, 8, 9, 12 and 4 more": at most five indices.
 std::string list_some(const std::string& what, const std::vector<int>& indices);

@@ -237,19 +237,8 @@ Points2 validate_planar_cage(Points2 cage, const Points2& must_enclose, double c
   }
   if (signed_area(cage) < 0)
     cage.bottomRows(cage.rows() - 1) = cage.bottomRows(cage.rows() - 1).colwise().reverse().eval();
-  const std::vector<int> outside = points_not_inside(cage, must_enclose);
-  if (!outside.empty()) {
-    fail(std::to_string(outside.size()) + " of " + std::to_string(must_enclose.rows()) +
-             " vertices of the character are not strictly inside: " + list_some("vertices", outside) +
-             ", vertex " + std::to_string(outside[0]) + " at " + place(must_enclose, outside[0]),
-         "enlarge the cage there");
-  }
-  const std::vector<int> close = points_not_inside(cage, must_enclose, clearance);
-  if (!close.empty()) {
-    fail(std::to_string(close.size()) + " vertices of the character are nearer to it than " +
-             number_text(clearance) + " m: " + list_some("vertices", close),
-         "enlarge the cage there, or ask for less clearance");
-  }
+  require_enclosed(name, must_enclose, clearance,
+                   [&](double wanted) { return points_not_inside(cage, must_enclose, wanted); });
   return cage;
 }
 

@@ -94,12 +94,8 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
   body.rest = space.make({body.mesh, body.elastic, elastic.rest, input.cage_weights, input.examples});
   body.rest->measures(body.elastic, Eigen::VectorXd::Zero(body.rest->free_parameters()), body.S0, nullptr);
   for (const auto& family : body.elastic) {
-    const double share = regularizer_share(*family, input.regularizer);
-    Eigen::VectorXd coefficients(family->value_count());
-    for (int i = 0; i < family->value_count(); ++i) {
-      coefficients[i] = share * family->coefficients()[i / family->components()];
-    }
-    body.regularizer_coefficients.push_back(std::move(coefficients));
+    body.regularizer_coefficients.push_back(regularizer_share(*family, input.regularizer) *
+                                            per_value(family->coefficients(), family->components()));
   }
   // ½ ρ |ṗ|² h² with ρ h² independent of h: 0.03 M g L per squared unit of p at h = 0.01 s.
   const double unit2 = body.rest->unit() * body.rest->unit();

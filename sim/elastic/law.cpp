@@ -6,6 +6,15 @@
 
 namespace vivify::sim {
 
+Eigen::VectorXd per_value(const Eigen::VectorXd& c, int components) {
+  if (components == 1) return c;
+  Eigen::VectorXd repeated(components * c.size());
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    repeated.segment(components * i, components).setConstant(c[i]);
+  }
+  return repeated;
+}
+
 Eigen::VectorXd strain(const Eigen::VectorXd& s, const Eigen::VectorXd& S, bool periodic) {
   Eigen::VectorXd d = s - S;
   if (periodic) {
@@ -27,14 +36,7 @@ class QuadraticLaw final : public Law {
     return stiffness(at).cwiseProduct(strain(at.s, at.S, periodic_));
   }
   bool diagonal() const override { return true; }
-  Eigen::VectorXd stiffness(const MeasureValues& at) const override {
-    if (components_ == 1) return at.c;
-    Eigen::VectorXd repeated(components_ * at.c.size());
-    for (Eigen::Index i = 0; i < at.c.size(); ++i) {
-      repeated.segment(components_ * i, components_).setConstant(at.c[i]);
-    }
-    return repeated;
-  }
+  Eigen::VectorXd stiffness(const MeasureValues& at) const override { return per_value(at.c, components_); }
   RowMatrixXd couple(const MeasureValues& at, const RowMatrixXd& rows) const override {
     return (-stiffness(at)).asDiagonal() * rows;
   }

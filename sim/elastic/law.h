@@ -48,6 +48,9 @@ std::unique_ptr<Law> make_quadratic_law(int components, bool periodic);
 // and rational in S.
 std::unique_ptr<Law> make_printed_green_law();
 
+// Coefficients of the terms, one per value: each is repeated for the components of its term.
+Eigen::VectorXd per_value(const Eigen::VectorXd& c, int components);
+
 // s − S as the laws see it.
 Eigen::VectorXd strain(const Eigen::VectorXd& s, const Eigen::VectorXd& S, bool periodic);
 

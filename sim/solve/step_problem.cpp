@@ -6,14 +6,6 @@
 namespace vivify::sim {
 namespace {
 
-// Coefficients per value instead of per term.
-Eigen::VectorXd per_value(const MeasureFamily& family) {
-  const int m = family.components();
-  Eigen::VectorXd c(family.value_count());
-  for (int i = 0; i < family.value_count(); ++i) c[i] = family.coefficients()[i / m];
-  return c;
-}
-
 bool is_periodic(const MeasureFamily& family) { return family.kind() == MeasureKind::angle; }
 
 }  // namespace
@@ -68,7 +60,8 @@ Eigen::VectorXd StepProblem::stress(std::size_t f, const DeformedPoint& at, cons
   const MeasureFamily& family = *body_.elastic[f];
   Eigen::VectorXd stress = family.law().stress(values(f, at, rest));
   if (damping_ > 0) {
-    stress += damping_ * per_value(family).cwiseProduct(strain(at.s[f], s_n_[f], is_periodic(family)));
+    stress += damping_ * per_value(family.coefficients(), family.components())
+                             .cwiseProduct(strain(at.s[f], s_n_[f], is_periodic(family)));
   }
   return stress;
 }
@@ -78,7 +71,7 @@ Eigen::VectorXd StepProblem::stress_slope(std::size_t f, const DeformedPoint& at
   const MeasureFamily& family = *body_.elastic[f];
   Eigen::VectorXd slope = family.law().stiffness(values(f, at, rest));
   if (damping_ == 0) return slope;
-  const Eigen::VectorXd c = per_value(family);
+  const Eigen::VectorXd c = per_value(family.coefficients(), family.components());
   if (family.law().diagonal()) return slope + damping_ * c;
   const int m = family.components();
   for (int i = 0; i < family.value_count(); ++i) {
@@ -105,7 +98,9 @@ double StepProblem::potential(const DeformedPoint& at, const RestPoint& rest) co
   if (damping_ == 0) return sum;
   for (std::size_t f = 0; f < body_.elastic.size(); ++f) {
     const MeasureFamily& family = *body_.elastic[f];
-    sum += 0.5 * damping_ * per_value(family).dot(strain(at.s[f], s_n_[f], is_periodic(family)).cwiseAbs2());
+    sum += 0.5 * damping_ *
+           per_value(family.coefficients(), family.components())
+               .dot(strain(at.s[f], s_n_[f], is_periodic(family)).cwiseAbs2());
   }
   return sum;
 }

@@ -13,17 +13,10 @@
 namespace vivify::meshing {
 namespace {
 
+using shapes::glyph;
+using shapes::outline_of;
+
 using ::testing::HasSubstr;
-
-Outline outline_of(std::vector<Points2> loops) { return clean_outline(loops, FillRule::even_odd, "test"); }
-
-Outline glyph(const std::string& text) {
-  return make_outline(
-      shapes::setting(
-          outline_schema(),
-          "{type: glyph, font: /usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf, text: '" + text + "'}"),
-      [](const std::string& path) { return std::filesystem::path(path); });
-}
 
 double diagonal_of(const Outline& outline) { return box_of(outline.loops).diagonal().norm(); }
 

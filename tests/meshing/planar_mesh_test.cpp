@@ -16,15 +16,8 @@
 namespace vivify::meshing {
 namespace {
 
-Outline glyph(const std::string& text) {
-  return make_outline(
-      shapes::setting(
-          outline_schema(),
-          "{type: glyph, font: /usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf, text: '" + text + "'}"),
-      [](const std::string& path) { return std::filesystem::path(path); });
-}
-
-Outline outline_of(std::vector<Points2> loops) { return clean_outline(loops, FillRule::even_odd, "test"); }
+using shapes::glyph;
+using shapes::outline_of;
 
 std::vector<std::pair<int, int>> boundary_edges(const Triangles& F) {
   std::set<std::pair<int, int>> directed;

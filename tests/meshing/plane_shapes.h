@@ -3,12 +3,15 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "common/config.h"
 #include "common/mesh.h"
 #include "common/schema.h"
+#include "meshing/outline.h"
 
 namespace vivify::meshing::shapes {
 
@@ -60,6 +63,20 @@ inline Value setting(const Schema& schema, const std::string& yaml) {
   const Value value = resolve(schema, parse_yaml(yaml, "s.yaml", errors), errors);
   if (!errors.empty()) throw errors.front();
   return value;
+}
+
+// A character of DejaVu Sans Bold, 1 m high.
+inline Outline glyph(const std::string& text) {
+  return make_outline(
+      setting(
+          outline_schema(),
+          "{type: glyph, font: /usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf, text: '" + text + "'}"),
+      [](const std::string& path) { return std::filesystem::path(path); });
+}
+
+// Loops by the even-odd rule.
+inline Outline outline_of(const std::vector<Points2>& loops) {
+  return clean_outline(loops, FillRule::even_odd, "test");
 }
 
 }  // namespace vivify::meshing::shapes
