@@ -5,11 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "common/registry.h"
 #include "common/text.h"
 #include "sim/contact/contact_points.h"
 #include "sim/control/rigid_motion.h"
+#include "sim/elastic/models/models.h"
 #include "sim/settings.h"
 #include "sim/solve/static_solve.h"
 
@@ -22,9 +24,10 @@ constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of for
 constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
 constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
 constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
-constexpr int kMaxStepSplits = 4;          // a step that cannot be solved is cut in halves so many times
+constexpr int kMaxStepSplits = 6;          // a step that cannot be solved is cut in halves so many times
+constexpr double kSqueezed = 0.1;          // of its size at rest: what a message calls a squeezed element
 constexpr double kTimeLimit = 100;  // of the median of the last steps: a step that takes longer is given up
-constexpr double kLeastTimeLimit = 10;  // s; a busy machine is no reason to stop
+constexpr double kLeastTimeLimit = 10;  // s
 constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
@@ -201,7 +204,10 @@ bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
   record.method = "static";
   record.iterations += solution.iterations;
   record.residual_rel = std::max(record.residual_rel, solution.residual / model_.weight);
-  if (!solution.converged) return false;
+  if (!solution.converged) {
+    stuck_ = std::move(solution.x);
+    return false;
+  }
 
   const int d = model_.dimension();
   const Eigen::Matrix3d R = best_rotation(model_.mass, solution.x, x_);
@@ -254,7 +260,10 @@ bool Body::advance(double h, const std::vector<Goal>& goals, const std::optional
         ContactSet(model_.contact_points, model_.contact, colliders, solution.at.x, reach, contact_memory_);
   }
   record.residual_rel = std::max(record.residual_rel, solution.residual);
-  if (!solution.exact) return false;
+  if (!solution.exact) {
+    stuck_ = std::move(solution.at.x);
+    return false;
+  }
 
   const Eigen::VectorXd x_n = x_;
   record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (solution.rest.q - q_)).norm() / h);
@@ -268,6 +277,7 @@ bool Body::advance(double h, const std::vector<Goal>& goals, const std::optional
 
 StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   const auto begin = std::chrono::steady_clock::now();
+  const double processor_begin = processor_seconds();
   double load = 0;
   for (const ContactMemory& memory : contact_memory_) load += memory.normal_force;
   const std::vector<Goal> goals = controller_->goals({x_, v_, load});
@@ -310,7 +320,7 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
                 "body '" + model_.name + "', step " + std::to_string(step) +
                     ": the equations of motion were not solved (residual " +
                     number_text(record.residual_rel) + " of the weight, in steps down to a " +
-                    std::to_string(1 << kMaxStepSplits) + "th)",
+                    std::to_string(1 << kMaxStepSplits) + "th" + squeezed_element() + ")",
                 "raise frames.steps_per_frame, ask for slower motion, or make the model stiffer");
   }
 
@@ -331,23 +341,39 @@ StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
   record.max_penetration = std::max(0.0, -record.min_clearance);
   const Eigen::Matrix3d R = best_rotation(model_.mass, rest_, x_);
   record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
-  note_step_time(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  note_step_time(processor_seconds() - processor_begin);
+  wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return record;
 }
 
+std::string Body::squeezed_element() const {
+  SimMesh mesh = model_.mesh;
+  const Eigen::VectorXd sizes = element_sizes(mesh);
+  mesh.V = unflatten(stuck_, model_.dimension());
+  Eigen::Index e = 0;
+  const double ratio = element_sizes(mesh).cwiseQuotient(sizes).minCoeff(&e);
+  if (!(ratio < kSqueezed)) return {};
+  std::ostringstream text;
+  text.precision(2);
+  text << ", with " << element_name(mesh, e);
+  if (ratio < 0) {
+    text << " turned inside out";
+  } else {
+    text << " squeezed to " << 100 * ratio << " % of its size at rest";
+  }
+  return text.str();
+}
+
 // None until enough steps tell how long one takes.
-std::chrono::steady_clock::time_point Body::step_deadline() const {
-  if (step_seconds_.size() < kFewestTimedSteps) return std::chrono::steady_clock::time_point::max();
+double Body::step_deadline() const {
+  if (step_seconds_.size() < kFewestTimedSteps) return INFINITY;
   std::vector<double> sorted = step_seconds_;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const std::chrono::duration<double> limit(std::max(kTimeLimit * *middle, kLeastTimeLimit));
-  return std::chrono::steady_clock::now() +
-         std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+  return processor_seconds() + std::max(kTimeLimit * *middle, kLeastTimeLimit);
 }
 
 void Body::note_step_time(double seconds) {
-  wall_seconds_ += seconds;
   if (step_seconds_.size() == kTimedSteps) step_seconds_.erase(step_seconds_.begin());
   step_seconds_.push_back(seconds);
 }

@@ -2,9 +2,10 @@
 // Newton's method. It is the passive simulator, and the start and finish of every controlled step.
 #pragma once
 
-#include <chrono>
+#include <limits>
 
 #include "sim/solve/linear_solver.h"
+#include "sim/solve/processor_time.h"
 #include "sim/solve/step_problem.h"
 
 namespace vivify::sim {
@@ -23,8 +24,8 @@ struct StepWorkspace {
   SymmetricMatrix block;
   LinearSolver solver;
   // A step that takes longer is given up; the solvers look at the clock once per iteration.
-  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
-  bool expired() const { return std::chrono::steady_clock::now() > deadline; }
+  double deadline = std::numeric_limits<double>::infinity();  // s of processor_seconds()
+  bool expired() const { return processor_seconds() > deadline; }
 };
 
 // From `x`, until ‖c‖∞ ≤ tolerance · weight. `factorized`: the workspace holds the factorisation of D at (x,

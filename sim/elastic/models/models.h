@@ -26,6 +26,8 @@ std::string rod2d_warning(const Value& material);
 
 // Parts that models share.
 
+// "triangle 17": an element as messages name it.
+std::string element_name(const SimMesh& mesh, Eigen::Index e);
 // Sizes of the elements (#E), all of which must be positive. Throws Error(geometry) that names the element.
 Eigen::VectorXd positive_sizes(const SimMesh& mesh);
 // Mass of the vertices from the density of each element (per length, area or volume).

@@ -4,15 +4,17 @@
 
 namespace vivify::sim {
 
+std::string element_name(const SimMesh& mesh, Eigen::Index e) {
+  const int points = mesh.element_points();
+  return (points == 2 ? "edge " : points == 3 ? "triangle " : "tetrahedron ") + std::to_string(e);
+}
+
 Eigen::VectorXd positive_sizes(const SimMesh& mesh) {
   Eigen::VectorXd sizes = element_sizes(mesh);
   for (Eigen::Index e = 0; e < sizes.size(); ++e) {
     if (sizes[e] > 0) continue;
-    const char* kind = mesh.element_points() == 2   ? "edge "
-                       : mesh.element_points() == 3 ? "triangle "
-                                                    : "tetrahedron ";
     throw Error(ErrorKind::geometry,
-                kind + std::to_string(e) + " of the simulation mesh has no size or is turned inside out",
+                element_name(mesh, e) + " of the simulation mesh has no size or is turned inside out",
                 "mesh the character again with more vertices");
   }
   return sizes;
