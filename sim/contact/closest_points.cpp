@@ -7,8 +7,8 @@
 namespace vivify::sim {
 namespace {
 
-// Below this sine of a corner's angle, squared, a triangle has no area, and two segments are parallel.
-constexpr double kParallel2 = 1e-20;
+constexpr double kFlat2 = 1e-20;      // squared sine of a corner's angle: below, a triangle has no area
+constexpr double kParallel2 = 1e-12;  // of the angle of two segments: below, they are parallel
 
 }  // namespace
 
@@ -25,7 +25,7 @@ TrianglePlace nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d
 TrianglePlace nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                   const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a;
-  if (ab.cross(ac).squaredNorm() <= kParallel2 * ab.squaredNorm() * ac.squaredNorm() || b == c) {
+  if (ab.cross(ac).squaredNorm() <= kFlat2 * ab.squaredNorm() * ac.squaredNorm() || b == c) {
     const std::array<const Eigen::Vector3d*, 3> corner = {&a, &b, &c};
     TrianglePlace best{};
     for (int k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ SegmentPlaces nearest_on_segments(const Eigen::Vector3d& a0, const Eigen::Vector
                                   const Eigen::Vector3d& b0, const Eigen::Vector3d& b1) {
   const Eigen::Vector3d u = a1 - a0, v = b1 - b0, w = a0 - b0;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-  const double determinant = uu * vv - uv * uv;
+  const double determinant = u.cross(v).squaredNorm();
   if (determinant > kParallel2 * uu * vv) {
     const double s = (uv * vw - vv * uw) / determinant, t = (uu * vw - uv * uw) / determinant;
     if (s >= 0 && s <= 1 && t >= 0 && t <= 1) return {s, t, w + s * u - t * v};

@@ -13,7 +13,8 @@ namespace vivify::sim {
 namespace {
 
 constexpr double kTouching = 1e-12;      // m; below, the offset of two places has no direction
-constexpr double kConeMargin = 1e-6;     // sine of the angle by which a direction must be inside a cone
+constexpr double kConeSlack = 0.1;       // sine of the angle by which a direction may be outside a cone
+constexpr double kFlat = 0.05;           // sine of the angle by which faces turn at an edge that may touch
 constexpr double kParallel2 = 1e-8;      // squared sine of the angle below which points describe two edges
 constexpr double kCrossingDepth = 0.25;  // of the mean edge: how deep crossed edges are looked for
 constexpr double kRestShare = 2;         // of the reach: features nearer than this at rest never touch
@@ -105,16 +106,20 @@ Eigen::Vector3d SurfaceState::point_normal(int p) const {
 bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n) const {
   const int p = surface_->edges(edge, 0), q = surface_->edges(edge, 1);
   const Eigen::Vector3d along = unit_or(point(q) - point(p), Eigen::Vector3d::Zero());
+  const std::span<const int> faces = edge_sides_[edge];
   Eigen::Vector3d normals = Eigen::Vector3d::Zero();
-  for (const int side : edge_sides_[edge]) {
+  double descent = 0;
+  for (const int face : faces) {
     int k = 0;
-    while (sides()(side, k) == p || sides()(side, k) == q) ++k;
-    Eigen::Vector3d into = point(sides()(side, k)) - point(p);
-    into -= along * along.dot(into);
-    if (n.dot(into) > -kConeMargin * into.norm()) return false;
-    normals += side_normal(side);
+    while (sides()(face, k) == p || sides()(face, k) == q) ++k;
+    const Eigen::Vector3d side = point(sides()(face, k)) - point(p);
+    const Eigen::Vector3d into = unit_or(side - along * along.dot(side), Eigen::Vector3d::Zero());
+    if (n.dot(into) > kConeSlack) return false;
+    descent -= n.dot(into);
+    normals += side_normal(face);
   }
-  return surface_->two_sided || n.dot(normals) > 0;
+  const bool rim = faces.size() < 2;
+  return (rim || descent >= kFlat) && (surface_->two_sided || n.dot(normals) > 0);
 }
 
 template <class Allow>
@@ -227,18 +232,24 @@ std::optional<SurfacePair> edge_pair(const SurfaceState& a, int i, const Surface
   };
   SurfacePair pair{SurfacePair::edge_edge, i,         j,     ends_a, ends_b, {1 - s, s, 0},
                    {1 - t, t, 0},          direction, length};
-  const bool may_cross = !a.surface().two_sided || !b.surface().two_sided;
+  if (length <= kTouching) {
+    if (!faces(direction)) pair.normal = -direction;
+    if (!faces(pair.normal)) return std::nullopt;
+    pair.distance = pair.normal.dot(offset);
+    return pair;
+  }
   if (length <= reach && faces(direction)) return pair;
-  if (!(may_cross ? length <= depth : length <= kTouching) || !faces(-direction)) return std::nullopt;
+  if (length > depth || !faces(-direction)) return std::nullopt;
   pair.normal = -direction;
-  pair.distance = may_cross ? -length : length;
+  pair.distance = -length;
   return pair;
 }
 
-bool is_inside(const SurfaceState& solid, const Eigen::Vector3d& y) {
-  if (solid.surface().two_sided) return true;
-  const std::optional<SurfacePlace> place = solid.nearest(y, INFINITY);
-  return place && place->distance < 0;
+// Whether a solid has y, or all but has it; shells and rods have no inside that could tell.
+bool may_have(const SurfaceState& body, const Eigen::Vector3d& y, double slack) {
+  if (body.surface().two_sided) return true;
+  const std::optional<SurfacePlace> place = body.nearest(y, INFINITY);
+  return place && place->distance <= slack;
 }
 
 void sort_pairs(std::vector<SurfacePair>& pairs) {
@@ -267,11 +278,12 @@ std::vector<SurfacePair> near_pairs(const SurfaceState& a, const SurfaceState& b
   BoxTree::visit_pairs(a.edge_tree(), b.edge_tree(), std::max(reach, depth), [&](int i, int j) {
     const std::optional<SurfacePair> pair = edge_pair(a, i, b, j, reach, depth);
     if (!pair) return;
-    if (pair->distance < 0) {  // crossed only if what lies between the edges is inside both
+    if (pair->distance < -kTouching) {  // crossed only if what lies between the edges is inside both
       const Eigen::Vector3d y_b =
           pair->weight_b[0] * b.point(pair->b[0]) + pair->weight_b[1] * b.point(pair->b[1]);
       const Eigen::Vector3d middle = y_b + pair->distance / 2 * pair->normal;
-      if (!is_inside(a, middle) || !is_inside(b, middle)) return;
+      const double slack = -kConeSlack * pair->distance;
+      if (!may_have(a, middle, slack) || !may_have(b, middle, slack)) return;
     }
     pairs.push_back(*pair);
   });

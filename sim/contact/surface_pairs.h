@@ -92,8 +92,8 @@ class SurfaceState {
 
 // All near places of two surfaces of the same dimension with distance ≤ `reach`, sorted by kind and features:
 //  - for each point of one the nearest place of the other, however deep inside a solid it is;
-//  - in space, edges whose nearest places are inside both and whose connecting direction lies in the cones of
-//    outward normals of both, so that no point describes the contact. Edges of solids that have crossed are
+//  - in space, sharp edges whose nearest places are inside both, and whose connecting direction is an outward
+//    normal of both, so that no point describes the contact. Edges of solids that have crossed are
 //    found down to the depth max(reach, mean_edge / 4).
 std::vector<SurfacePair> near_pairs(const SurfaceState& a, const SurfaceState& b, double reach);
 
