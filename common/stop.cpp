@@ -1,5 +1,6 @@
 #include "common/stop.h"
 
+#include <atomic>
 #include <csignal>
 
 #include "common/error.h"
@@ -7,7 +8,9 @@
 namespace vivify {
 namespace {
 
-volatile std::sig_atomic_t asked_signal = 0;
+// Any thread may get the signal, and any thread asks for it.
+std::atomic<int> asked_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "what a signal handler may use");
 
 void on_signal(int signal) { asked_signal = signal; }
 
@@ -23,8 +26,9 @@ void install_stop_handlers() {
 }
 
 void check_stop() {
-  if (asked_signal == 0) return;
-  if (asked_signal == SIGINT)
+  const int signal = asked_signal;
+  if (signal == 0) return;
+  if (signal == SIGINT)
     throw Error(ErrorKind::interrupted, "interrupted", "run the same command again to go on");
   throw Error(ErrorKind::stopped, "stopped on request", "run the same command again to go on");
 }

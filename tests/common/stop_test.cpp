@@ -4,7 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
+#include <thread>
+#include <vector>
 
 #include "common/error.h"
 
@@ -35,6 +38,32 @@ TEST(Stop, SignalsBecomeExitCodes) {
   EXPECT_EQ(exit_code_after(SIGUSR1), 75);
   EXPECT_EQ(exit_code_after(SIGINT), 130);
   EXPECT_EQ(exit_code_after(SIGXFSZ), 0);
+}
+
+// For the thread sanitizer too.
+TEST(Stop, EveryThreadSeesASignalThatOneGets) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    install_stop_handlers();
+    std::array<bool, 2> stopped = {};
+    {
+      std::vector<std::jthread> threads;
+      for (bool& mine : stopped) {
+        threads.emplace_back([&mine] {
+          try {
+            for (;;) check_stop();
+          } catch (const Error& error) {
+            mine = error.kind() == ErrorKind::stopped;
+          }
+        });
+      }
+      threads.emplace_back([] { ::raise(SIGTERM); });
+    }
+    ::_exit(stopped[0] && stopped[1] ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 }  // namespace
