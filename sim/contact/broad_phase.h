@@ -40,6 +40,10 @@ class BoxTree {
   template <class Visit>
   void visit_near(const Eigen::Vector3d& p, const double& bound2, const Visit& visit) const;
 
+  // Calls visit(element) for all elements whose boxes intersect `box`.
+  template <class Visit>
+  void visit_near(const BoundingBox& box, const Visit& visit) const;
+
   // Calls visit(element of a, element of b) for all pairs whose boxes are within `reach` of each other.
   template <class Visit>
   static void visit_pairs(const BoxTree& a, const BoxTree& b, double reach, const Visit& visit);
@@ -85,6 +89,25 @@ void BoxTree::visit_near(const Eigen::Vector3d& p, const double& bound2, const V
     if (left.distance2 <= right.distance2) std::swap(left, right);
     if (left.distance2 <= bound2) stack[size++] = left;
     if (right.distance2 <= bound2) stack[size++] = right;
+  }
+}
+
+template <class Visit>
+void BoxTree::visit_near(const BoundingBox& box, const Visit& visit) const {
+  if (empty()) return;
+  std::array<int, 64> stack;
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const int i = stack[--size];
+    const Node& node = nodes_[i];
+    if (!node.box.intersects(box)) continue;
+    if (node.right < 0) {
+      visit(node.element);
+    } else {
+      stack[size++] = node.right;
+      stack[size++] = i + 1;
+    }
   }
 }
 

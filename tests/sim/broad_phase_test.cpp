@@ -68,6 +68,22 @@ TEST(BoxTree, VisitsTheNearestAndFewOthers) {
   EXPECT_LT(visits, 200 * 40);
 }
 
+TEST(BoxTree, VisitsTheElementsThatABoxMeets) {
+  CounterRng rng(5);
+  const Shape shape = soup(150, 0.1, rng);
+  const BoxTree tree(shape.F, shape.V);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Eigen::Vector3d centre = random_point(1, rng), half = random_point(0.3, rng).cwiseAbs();
+    const BoundingBox box(centre - half, centre + half);
+    std::multiset<int> found, expected;
+    tree.visit_near(box, [&](int f) { found.insert(f); });
+    for (int f = 0; f < 150; ++f) {
+      if (box_of(shape, f).intersects(box)) expected.insert(f);
+    }
+    EXPECT_EQ(found, expected);
+  }
+}
+
 TEST(BoxTree, OfAMotionHoldsItsBeginningAndItsEnd) {
   CounterRng rng(3);
   const Shape begin = soup(60, 0.05, rng), end = soup(60, 0.05, rng), other = soup(60, 0.05, rng);
