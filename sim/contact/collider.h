@@ -1,44 +1,48 @@
-// A static triangle mesh that characters collide with.
+// An object that characters collide with. It stands, moves along keyframes, or carries what stands on it
+// along like a conveyor.
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "common/mesh.h"
+#include "sim/contact/collider_shape.h"
+#include "sim/contact/rigid_path.h"
 
 namespace vivify::sim {
 
-// The place of a collider's surface nearest to a query point.
-struct SurfacePoint {
-  Eigen::Vector3d position;
-  Eigen::Vector3d normal;  // unit, outward; the direction of steepest growth of the signed distance
-  double distance;         // signed, metres; negative inside
-};
-
 class Collider {
  public:
-  // `surface` is outward oriented; it need not be closed (a table top may be a single quad). `friction` is
-  // Coulomb's μ and may be infinite: the unlimited springs of the paper. Throws Error(geometry) for an empty
-  // or degenerate surface. Vertices in the same place are one; an open surface has no inside beyond its rim.
+  // A static triangle surface, in the world. Throws Error(geometry) for an empty, degenerate, leaking or
+  // wrongly oriented surface (sim/contact/surface_check.h). `friction` is Coulomb's μ and may be infinite:
+  // the unlimited springs of the paper.
   Collider(std::string name, TriangleMesh surface, double friction);
-  ~Collider();
-  Collider(Collider&&) noexcept;
-  Collider& operator=(Collider&&) noexcept;
+  // `shape` is in the collider's own frame, which `motion` moves through the world; `surface_velocity` is in
+  // that frame too.
+  Collider(std::string name, std::unique_ptr<ColliderShape> shape, double friction, RigidPath motion = {},
+           const Eigen::Vector3d& surface_velocity = Eigen::Vector3d::Zero());
 
   const std::string& name() const { return name_; }
   double friction() const { return friction_; }
+  const ColliderShape& shape() const { return *shape_; }
 
-  // The nearest surface point. The sign comes from the angle-weighted pseudo-normal of the nearest feature
-  // (Bærentzen and Aanæs 2005), so it is right at edges and corners too.
+  // The nearest surface point; `point` and answer are in the collider's own frame. Throws Error(numerical)
+  // for a point at no finite distance.
   SurfacePoint nearest(const Eigen::Vector3d& point) const;
 
+  // From the collider's own frame to the world at time t (s); the identity for one that does not move.
+  Eigen::Isometry3d pose(double t) const { return motion_.pose(t); }
+  bool moves() const { return motion_.moves(); }
+  // Velocity of the surface beside that of the motion, in the own frame (m/s). Its tangential part moves what
+  // stands on the surface; the surface itself stays where it is.
+  const Eigen::Vector3d& surface_velocity() const { return surface_velocity_; }
+
  private:
-  struct Tree;
   std::string name_;
-  TriangleMesh surface_;
+  std::unique_ptr<ColliderShape> shape_;
   double friction_;
-  std::unique_ptr<Tree> tree_;
+  RigidPath motion_;
+  Eigen::Vector3d surface_velocity_;
 };
 
 }  // namespace vivify::sim
