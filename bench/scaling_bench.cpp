@@ -1,6 +1,6 @@
 // Cost and memory against the degrees of freedom, from 100 to 100 000: a step of a body that is controlled
 // through a cage (24 parameters in space, 8 in the plane) and a passive one, each in a process of its own for
-// its peak memory.
+// its peak memory. Times are processor time on one thread.
 //   scaling_bench [LARGEST]      at most so many degrees of freedom
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -13,6 +13,7 @@
 
 #include "bench/bodies.h"
 #include "bench/timing.h"
+#include "common/parallel.h"
 #include "sim/world.h"
 
 using namespace vivify;
@@ -21,6 +22,7 @@ using namespace vivify::bench;
 namespace {
 
 constexpr int kSteps = 4;  // of every body, from the start
+constexpr int kStepsOfLarge = 1, kLargeDofs = 50000;
 constexpr double kEnough =
     1;  // s; small bodies start over until they took that long, and their median counts
 constexpr int kMostRuns = 31;
@@ -33,6 +35,8 @@ struct Cost {
 // Steps of the thrust of a hop, or of the same time without control.
 Cost measure(const SimMesh& mesh, const std::string& model, bool controlled) {
   Cost cost;
+  set_thread_count(1);
+  const int steps = mesh.V.size() < kLargeDofs ? kSteps : kStepsOfLarge;
   const std::string controller =
       controlled ? "{type: hop, heading_deg: 90, height: 0.2, pace: 0.5, crouch_s: 0.01, thrust_s: 1}" : "{}";
   std::vector<double> times;
@@ -44,13 +48,13 @@ Cost measure(const SimMesh& mesh, const std::string& model, bool controlled) {
                                            sim::WorldSettings{});
     });
     times.push_back(seconds_of([&] {
-      for (int step = 0; step < kSteps; ++step) world->step();
+      for (int step = 0; step < steps; ++step) world->step();
     }));
     cost.iterations = 0;
     for (const sim::StepRecord& record : world->records()) cost.iterations += record.iterations;
   }
-  cost.step = median(times) / kSteps;
-  cost.iterations /= kSteps;
+  cost.step = median(times) / steps;
+  cost.iterations /= steps;
   return cost;
 }
 

@@ -23,6 +23,12 @@ set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED)
 include(CGAL_Eigen3_support)
 
+find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
+find_library(METIS_LIBRARY metis REQUIRED)
+add_library(metis::metis INTERFACE IMPORTED)
+target_include_directories(metis::metis INTERFACE ${METIS_INCLUDE_DIR})
+target_link_libraries(metis::metis INTERFACE ${METIS_LIBRARY})
+
 find_path(TETGEN_INCLUDE_DIR tetgen.h REQUIRED)
 find_library(TETGEN_LIBRARY tet REQUIRED)
 add_library(tetgen::tetgen INTERFACE IMPORTED)

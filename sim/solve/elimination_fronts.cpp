@@ -1,10 +1,14 @@
 #include "sim/solve/elimination_fronts.h"
 
+#include <metis.h>
+
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <limits>
+#include <mutex>
 #include <numeric>
 
+#include "common/error.h"
 #include "common/rng.h"
 
 namespace vivify::sim {
@@ -13,6 +17,9 @@ namespace {
 // Minimum degree decides ties by the numbers of the vertices, to very different fill: the best of some
 // numberings is kept.
 constexpr int kNumberings = 12;
+// Of graphs of so many vertices, dissection is tried too, and finds less fill in solids; few numberings then.
+constexpr int kDissected = 1500, kNumberingsOfDissected = 2;
+constexpr int kLeaf = 120;  // vertices that are not dissected further
 
 using Graph = std::vector<std::vector<int>>;  // neighbours of every vertex, without itself
 
@@ -50,6 +57,71 @@ std::vector<int> minimum_degree_order(const Graph& graph, const std::vector<int>
   Eigen::AMDOrdering<int>()(matrix, permutation);
   std::vector<int> order(graph.size());
   for (int i = 0; i < count; ++i) order[i] = numbering[permutation.indices()[i]];
+  return order;
+}
+
+enum Part { kFirst, kSecond, kSeparator, kParts };
+
+// The Part of every vertex: no edge joins the first and the second, which are about equal.
+std::vector<idx_t> separate(const Graph& graph) {
+  std::vector<idx_t> begins = {0}, neighbours;
+  for (const std::vector<int>& of_vertex : graph) {
+    neighbours.insert(neighbours.end(), of_vertex.begin(), of_vertex.end());
+    begins.push_back(static_cast<idx_t>(neighbours.size()));
+  }
+  idx_t count = static_cast<idx_t>(graph.size()), separator_size = 0;
+  std::vector<idx_t> weights(graph.size(), 1), parts(graph.size());
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_UFACTOR] = 200;  // parts up to 1.2 times as large as even ones
+  // METIS seeds and draws the random numbers of the C library, which are those of the whole process.
+  static std::mutex random_numbers;
+  const std::lock_guard lock(random_numbers);
+  if (METIS_ComputeVertexSeparator(&count, begins.data(), neighbours.data(), weights.data(), options,
+                                   &separator_size, parts.data()) != METIS_OK) {
+    throw Error(
+        ErrorKind::numerical, "no order of elimination was found",
+        "METIS failed on a graph of " + std::to_string(count) + " vertices; there may be too little memory");
+  }
+  return parts;
+}
+
+// Vertices in the order of nested dissection (George 1973): both sides of a separator, each dissected
+// likewise, before the separator.
+std::vector<int> dissection_order(const Graph& graph) {
+  std::vector<int> order, local(graph.size(), -1);
+  std::vector<std::vector<int>> open(1, std::vector<int>(graph.size()));
+  std::iota(open[0].begin(), open[0].end(), 0);
+  while (!open.empty()) {  // from the last vertices to the first
+    const std::vector<int> vertices = std::move(open.back());
+    open.pop_back();
+    const int count = static_cast<int>(vertices.size());
+    for (int i = 0; i < count; ++i) local[vertices[i]] = i;
+    Graph part(vertices.size());
+    for (int i = 0; i < count; ++i) {
+      for (const int neighbour : graph[vertices[i]]) {
+        if (local[neighbour] >= 0) part[i].push_back(local[neighbour]);
+      }
+    }
+    for (const int vertex : vertices) local[vertex] = -1;
+    std::vector<int> parts[kParts];
+    if (count > kLeaf) {
+      const std::vector<idx_t> part_of = separate(part);
+      for (int i = 0; i < count; ++i) parts[part_of[i]].push_back(vertices[i]);
+    }
+    if (parts[kFirst].empty() || parts[kSecond].empty()) {
+      std::vector<int> numbering(vertices.size());
+      std::iota(numbering.begin(), numbering.end(), 0);
+      const std::vector<int> leaf = minimum_degree_order(part, numbering);
+      std::for_each(leaf.rbegin(), leaf.rend(), [&](int i) { order.push_back(vertices[i]); });
+    } else {
+      order.insert(order.end(), parts[kSeparator].rbegin(), parts[kSeparator].rend());
+      open.push_back(std::move(parts[kFirst]));
+      open.push_back(std::move(parts[kSecond]));
+    }
+  }
+  std::reverse(order.begin(), order.end());
   return order;
 }
 
@@ -151,17 +223,20 @@ Elimination order_elimination(const Eigen::SparseMatrix<double>& lower, int dim)
   std::iota(numbering.begin(), numbering.end(), 0);
   std::vector<TreeFront> fronts;
   double least_cost = std::numeric_limits<double>::infinity();
-  CounterRng rng(0);
-  for (int i = 0; i < kNumberings; ++i) {
-    const std::vector<int> candidate = minimum_degree_order(graph, numbering);
+  const auto compare = [&](const std::vector<int>& candidate) {
     std::vector<TreeFront> merged = elimination_tree(graph, candidate);
     merge_fronts(merged, dim);
     const double cost = total_cost(merged, dim);
-    if (cost < least_cost) {
-      least_cost = cost;
-      order = candidate;
-      fronts = std::move(merged);
-    }
+    if (cost >= least_cost) return;
+    least_cost = cost;
+    order = candidate;
+    fronts = std::move(merged);
+  };
+  const bool dissected = static_cast<int>(graph.size()) >= kDissected;
+  if (dissected) compare(dissection_order(graph));
+  CounterRng rng(0);
+  for (int i = 0; i < (dissected ? kNumberingsOfDissected : kNumberings); ++i) {
+    compare(minimum_degree_order(graph, numbering));
     for (std::size_t k = graph.size(); k > 1; --k) std::swap(numbering[k - 1], numbering[rng.next() % k]);
   }
 

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <functional>
 
+#include "common/parallel.h"
 #include "common/rng.h"
 #include "sim/solve/block_cholesky.h"
 
@@ -210,6 +211,95 @@ INSTANTIATE_TEST_SUITE_P(Patterns, Factorisation,
                            return std::string(std::get<0>(test.param).name) + "_" +
                                   std::to_string(std::get<1>(test.param)) + "d";
                          });
+
+// Large enough for nested dissection, or for fronts of several panels that threads share.
+const Shape kLargeShapes[] = {
+    {"dense", 220,
+     [](CounterRng& rng) {
+       Couples couples;
+       couple_random(couples, 0, 220, 1, rng);
+       return couples;
+     }},
+    {"lattice", 14 * 14 * 14,
+     [](CounterRng&) {
+       Couples couples;
+       for (int v = 0; v < 14 * 14 * 14; ++v) {
+         const int x = v % 14, y = v / 14 % 14, z = v / 196;
+         for (const auto& [dx, dy, dz] : {std::tuple{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}) {
+           if (x + dx < 14 && y + dy < 14 && z + dz < 14)
+             couples.emplace_back(v + dx + 14 * dy + 196 * dz, v);
+         }
+       }
+       return couples;
+     }},
+    {"pieces", 2000,
+     [](CounterRng& rng) {
+       Couples couples;
+       couple_random(couples, 0, 500, 0.01, rng);
+       for (int v = 701; v < 2000; ++v) couples.emplace_back(v, v % 100 == 0 ? 600 : v - 1);
+       return couples;
+     }},
+    {"arrow", 1600,
+     [](CounterRng&) {
+       Couples couples;
+       for (int v = 1; v < 1600; ++v) couples.emplace_back(v, 0);
+       return couples;
+     }},
+    {"loose_vertices", 1600, [](CounterRng&) { return Couples{}; }},
+};
+
+class LargeFactorisation : public ::testing::TestWithParam<std::tuple<Shape, int>> {};
+
+TEST_P(LargeFactorisation, SolvesWithTheSameBitsOnAnyThreadCount) {
+  const auto& [shape, dim] = GetParam();
+  const Sparse lower = random_matrix(shape, dim, 0.1, 2);
+  const Sparse opposite = -lower;
+  const Eigen::MatrixXd rhs = random_columns(lower.cols(), 5, 3);
+  Eigen::MatrixXd expected;
+  for (const int threads : {1, 2, 5}) {
+    set_thread_count(threads);
+    BlockCholesky factor(lower, dim);
+    EXPECT_FALSE(factor.factorize(opposite.valuePtr()));
+    EXPECT_EQ(factor.inertia(opposite.valuePtr()).negative, lower.cols());
+    ASSERT_TRUE(factor.factorize(lower.valuePtr()));
+    Eigen::MatrixXd x = rhs;
+    factor.solve_in_place(x);
+    set_thread_count(0);
+    if (threads == 1) expected = x;
+    EXPECT_EQ(x, expected) << threads << " threads";
+    EXPECT_LE((lower.selfadjointView<Eigen::Lower>() * x - rhs).norm(), 1e-13 * rhs.norm());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Patterns, LargeFactorisation,
+                         ::testing::Combine(::testing::ValuesIn(kLargeShapes), ::testing::Values(1, 2, 3)),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param).name) + "_" +
+                                  std::to_string(std::get<1>(test.param)) + "d";
+                         });
+
+// Less than minimum degree, with the zeros inside fronts.
+TEST(LinearSolver, FillsLargeSolidsLittle) {
+  constexpr int kSide = 14;
+  SymmetricPattern pattern(kSide * kSide * kSide, 3);
+  for (int z = 0; z + 1 < kSide; ++z) {
+    for (int y = 0; y + 1 < kSide; ++y) {
+      for (int x = 0; x + 1 < kSide; ++x) {
+        std::vector<int> corners;
+        for (int c = 0; c < 8; ++c) {
+          corners.push_back(x + (c & 1) + kSide * (y + (c >> 1 & 1) + kSide * (z + (c >> 2))));
+        }
+        pattern.couple(corners.data(), 8);
+      }
+    }
+  }
+  pattern.finish();
+  SymmetricMatrix matrix(pattern);
+  for (int i = 0; i < pattern.size(); ++i) matrix.lower().coeffRef(i, i) = 1;
+  const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::AMDOrdering<int>> eigen(matrix.lower());
+  EXPECT_LT(static_cast<double>(BlockCholesky(matrix.lower(), 3).nonzeros()),
+            0.9 * static_cast<double>(eigen.matrixL().nestedExpression().nonZeros()));
+}
 
 TEST(LinearSolver, SolvesOverASymmetricPattern) {
   for (const int dim : {2, 3}) {
