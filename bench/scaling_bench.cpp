@@ -22,7 +22,6 @@ using namespace vivify::bench;
 namespace {
 
 constexpr int kSteps = 4;  // of every body, from the start
-constexpr int kStepsOfLarge = 1, kLargeDofs = 50000;
 constexpr double kEnough =
     1;  // s; small bodies start over until they took that long, and their median counts
 constexpr int kMostRuns = 31;
@@ -36,7 +35,6 @@ struct Cost {
 Cost measure(const SimMesh& mesh, const std::string& model, bool controlled) {
   Cost cost;
   set_thread_count(1);
-  const int steps = mesh.V.size() < kLargeDofs ? kSteps : kStepsOfLarge;
   const std::string controller =
       controlled ? "{type: hop, heading_deg: 90, height: 0.2, pace: 0.5, crouch_s: 0.01, thrust_s: 1}" : "{}";
   std::vector<double> times;
@@ -48,13 +46,13 @@ Cost measure(const SimMesh& mesh, const std::string& model, bool controlled) {
                                            sim::WorldSettings{});
     });
     times.push_back(seconds_of([&] {
-      for (int step = 0; step < steps; ++step) world->step();
+      for (int step = 0; step < kSteps; ++step) world->step();
     }));
     cost.iterations = 0;
     for (const sim::StepRecord& record : world->records()) cost.iterations += record.iterations;
   }
-  cost.step = median(times) / steps;
-  cost.iterations /= steps;
+  cost.step = median(times) / kSteps;
+  cost.iterations /= kSteps;
   return cost;
 }
 
