@@ -34,12 +34,18 @@ Schema placed_schema(std::string doc, bool mesh_required) {
       .field("looks", looks_schema());
 }
 
-void place(const Value& item, Points& V) {
-  const double scale = item["scale"].as_number();
+Eigen::Matrix3d heading_rotation(const Value& item) {
   const double heading = item["heading_deg"].as_number() * std::numbers::pi / 180;
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  const Eigen::RowVector3d position = item["position"].as_vector3().transpose();
-  V = ((scale * V) * turn.transpose()).rowwise() + position;
+  return Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitY()).toRotationMatrix();
+}
+
+void scale_and_turn(const Value& item, Points& V) {
+  V = ((item["scale"].as_number() * V) * heading_rotation(item).transpose()).eval();
+}
+
+void place(const Value& item, Points& V) {
+  scale_and_turn(item, V);
+  V.rowwise() += item["position"].as_vector3().transpose();
 }
 
 void place(const Value& item, Points2& V) {

@@ -11,6 +11,7 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "pipeline/body_settings.h"
+#include "pipeline/collider_settings.h"
 #include "pipeline/placement.h"
 #include "pipeline/pose_file.h"
 #include "render/lens.h"
@@ -32,13 +33,6 @@ Schema video_schema() {
                                    .at_least(-20)
                                    .at_most(20)
                                    .initially(0.0));
-}
-
-Schema collider_schema() {
-  return placed_schema("A fixed object that bodies touch.", true)
-      .field("friction",
-             number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
-      .field("visible", boolean("Whether it is drawn.").initially(true));
 }
 
 Schema frames_schema() {
@@ -113,6 +107,7 @@ class SemanticCheck {
     names();
     looks();
     bodies();
+    colliders();
     camera();
     frames();
     picture();
@@ -171,6 +166,22 @@ class SemanticCheck {
         const std::filesystem::path pose =
             example.has("pose") ? scene_.resolve_path(example["pose"].as_string()) : "";
         if (std::filesystem::is_regular_file(pose)) load_pose(pose, errors_);
+      }
+    }
+  }
+
+  // Meshes of colliders are read here: their faults shall not come out after hours of simulation.
+  void colliders() {
+    const std::vector<Value>& colliders = scene_.settings["colliders"].items();
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+      const std::string where = "colliders[" + std::to_string(i) + "]";
+      const std::size_t before = errors_.size();
+      check_collider(colliders[i], where, errors_);
+      const bool readable =
+          !colliders[i].has("mesh") ||
+          std::filesystem::is_regular_file(scene_.resolve_path(colliders[i]["mesh"].as_string()));
+      if (errors_.size() == before && readable) {
+        attempt(colliders[i], [&] { make_collider(scene_, colliders[i], where); });
       }
     }
   }
@@ -253,7 +264,7 @@ Schema scene_schema() {
                  .initially("dynamic"))
       .field("materials", dictionary("Looks, by name.", render::material_schema()))
       .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
-      .field("colliders", list("Fixed objects that bodies touch.", collider_schema()))
+      .field("colliders", list("Objects that bodies touch.", collider_schema()))
       .field("props",
              list("Objects that are drawn only.", placed_schema("A fixed object that is drawn only.", true)))
       .field("camera", following_camera_schema())

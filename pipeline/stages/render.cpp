@@ -4,6 +4,7 @@
 #include "common/hdf5_file.h"
 #include "meshing/skin.h"
 #include "pipeline/camera_path.h"
+#include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/placement.h"
@@ -36,13 +37,11 @@ render::Looks make_looks(const Scene& scene) {
 
 bool is_drawn(const Value& item) { return !item.has("visible") || item["visible"].as_bool(); }
 
-// Colliders and props that are drawn.
-std::vector<Value> fixed_objects(const Scene& scene) {
+// Colliders or props that are drawn.
+std::vector<Value> drawn_objects(const Scene& scene, const std::string& list) {
   std::vector<Value> objects;
-  for (const char* list : {"colliders", "props"}) {
-    for (const Value& item : scene.settings[list].items()) {
-      if (is_drawn(item)) objects.push_back(item);
-    }
+  for (const Value& item : scene.settings[list].items()) {
+    if (is_drawn(item)) objects.push_back(item);
   }
   return objects;
 }
@@ -56,9 +55,13 @@ std::string looks_key(const Job& job) {
   // The smoothed path of the camera depends on the frames to come.
   if (scene.settings["camera"].has("follow")) key.add("frames", scene.frame_count);
   for (const Value& body : scene.settings["bodies"].items()) key.add("looks", body["looks"]);
-  for (const Value& object : fixed_objects(scene)) {
-    for (const char* part : {"position", "scale", "heading_deg", "looks"}) key.add(part, object[part]);
-    key.add_mesh_file(scene.resolve_path(object["mesh"].as_string()));
+  for (const Value& collider : drawn_objects(scene, "colliders")) {
+    key.add("looks", collider["looks"]);
+    add_collider_geometry(key, scene, collider);
+  }
+  for (const Value& prop : drawn_objects(scene, "props")) {
+    for (const char* part : {"position", "scale", "heading_deg", "looks"}) key.add(part, prop[part]);
+    key.add_mesh_file(scene.resolve_path(prop["mesh"].as_string()));
   }
   for (const std::filesystem::path& file : render::referenced_files(make_looks(scene))) key.add_file(file);
   return key.hex();
@@ -101,8 +104,7 @@ DrawnBody load_body(const Job& job, const Value& body) {
   return drawn;
 }
 
-render::Mesh load_fixed(const Scene& scene, const Value& object) {
-  TriangleMesh surface = read_placed_mesh(scene, object);
+render::Mesh drawn_mesh(const Value& object, TriangleMesh surface) {
   render::Mesh mesh;
   mesh.name = object["name"].as_string();
   mesh.part_materials = part_materials(object, surface.part_names);
@@ -112,6 +114,18 @@ render::Mesh load_fixed(const Scene& scene, const Value& object) {
   mesh.face_part = std::move(surface.face_part);
   return mesh;
 }
+
+// A collider on its way.
+struct MovingObject {
+  std::size_t mesh;  // of the frame
+  Points V;          // in its own frame
+  sim::RigidPath path;
+
+  Points at(double t) const {
+    const Eigen::Isometry3d pose = path.pose(t);
+    return (V * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+  }
+};
 
 // Positions of the vertices of a body's simulation mesh (#V by 2 or 3).
 RowMatrixXd body_positions(const Job& job, int frame, const std::string& body) {
@@ -143,7 +157,17 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
     bodies.push_back(load_body(job, body));
     frame.meshes.push_back(bodies.back().mesh);
   }
-  for (const Value& object : fixed_objects(scene)) frame.meshes.push_back(load_fixed(scene, object));
+  std::vector<MovingObject> moving;
+  for (const Value& collider : drawn_objects(scene, "colliders")) {
+    frame.meshes.push_back(drawn_mesh(collider, collider_surface(scene, collider)));
+    sim::RigidPath path = collider_path(collider, collider["name"].as_string());
+    if (path.moves()) {
+      moving.push_back({frame.meshes.size() - 1, frame.meshes.back().V, std::move(path)});
+    }
+  }
+  for (const Value& prop : drawn_objects(scene, "props")) {
+    frame.meshes.push_back(drawn_mesh(prop, read_placed_mesh(scene, prop)));
+  }
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) frame.meshes[i].object_id = static_cast<int>(i) + 1;
 
   const render::Renderer renderer(make_looks(scene));
@@ -162,6 +186,9 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       frame.meshes[i].V =
           meshing::draw(bodies[i].skin, bodies[i].elements, body_positions(job, number, bodies[i].name));
+    }
+    for (const MovingObject& object : moving) {
+      frame.meshes[object.mesh].V = object.at(static_cast<double>(number - 1) / scene.fps);
     }
     const std::string note = "frame " + std::to_string(number);
     long shown = 0;

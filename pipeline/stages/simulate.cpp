@@ -13,9 +13,9 @@
 #include "common/stop.h"
 #include "meshing/skin.h"
 #include "pipeline/body_settings.h"
+#include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
-#include "pipeline/placement.h"
 #include "pipeline/run_report.h"
 #include "pipeline/stages/stages.h"
 #include "sim/contact/contact_points.h"
@@ -89,9 +89,9 @@ sim::World make_world(const Job& job) {
   std::vector<sim::BodyInput> bodies;
   for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body));
   std::vector<sim::Collider> colliders;
-  for (const Value& collider : scene.settings["colliders"].items()) {
-    colliders.emplace_back(collider["name"].as_string(), read_placed_mesh(scene, collider),
-                           collider["friction"].as_number());
+  const std::vector<Value>& items = scene.settings["colliders"].items();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    colliders.push_back(make_collider(scene, items[i], "colliders[" + std::to_string(i) + "]"));
   }
   return sim::World(bodies, std::move(colliders),
                     {scene.settings["gravity"].as_vector3(), scene.time_step(),
@@ -266,9 +266,8 @@ std::string simulation_key(const Job& job) {
     }
   }
   for (const Value& collider : scene.settings["colliders"].items()) {
-    for (const char* part : {"name", "position", "scale", "heading_deg", "friction"})
-      key.add(part, collider[part]);
-    key.add_mesh_file(scene.resolve_path(collider["mesh"].as_string()));
+    for (const char* part : {"name", "friction", "surface_velocity"}) key.add(part, collider[part]);
+    add_collider_geometry(key, scene, collider);
   }
   return key.hex();
 }

@@ -20,7 +20,6 @@ using Edge = std::pair<int, int>;
 
 struct EdgeUse {
   int forward = 0, backward = 0;  // faces that go along it from the lower to the higher vertex, and back
-  int face = -1;                  // one of them
   int count() const { return forward + backward; }
 };
 
@@ -32,19 +31,36 @@ struct Part {
   bool closed() const { return rim.empty(); }
 };
 
+class DisjointSets {
+ public:
+  explicit DisjointSets(Eigen::Index size) : above_(static_cast<std::size_t>(size)) {
+    std::iota(above_.begin(), above_.end(), 0);
+  }
+  int root(int item) {
+    while (above(item) != item) {
+      above(item) = above(above(item));
+      item = above(item);
+    }
+    return item;
+  }
+  void join(int a, int b) { above(root(a)) = root(b); }
+
+ private:
+  int& above(int item) { return above_[static_cast<std::size_t>(item)]; }
+  std::vector<int> above_;
+};
+
 class Check {
  public:
   Check(const std::string& name, const TriangleMesh& surface)
-      : name_(name), V_(surface.V), F_(surface.F), root_(static_cast<std::size_t>(surface.V.rows())) {
-    std::iota(root_.begin(), root_.end(), 0);
+      : name_(name), V_(surface.V), F_(surface.F), part_of_(V_.rows()), hole_of_(V_.rows()) {
     for (int f = 0; f < F_.rows(); ++f) {
       if (collapsed(f)) continue;
       for (int k = 0; k < 3; ++k) {
         const int a = F_(f, k), b = F_(f, (k + 1) % 3);
         EdgeUse& use = edges_[std::minmax(a, b)];
         ++(a < b ? use.forward : use.backward);
-        use.face = f;
-        root_[static_cast<std::size_t>(root(a))] = root(b);
+        part_of_.join(a, b);
       }
     }
   }
@@ -60,17 +76,8 @@ class Check {
   bool collapsed(int f) const { return F_(f, 0) == F_(f, 1) || F_(f, 1) == F_(f, 2) || F_(f, 2) == F_(f, 0); }
   Eigen::Vector3d at(int vertex) const { return V_.row(vertex).transpose(); }
 
-  int root(int vertex) {
-    while (root_[static_cast<std::size_t>(vertex)] != vertex) {
-      int& next = root_[static_cast<std::size_t>(vertex)];
-      next = root_[static_cast<std::size_t>(next)];
-      vertex = next;
-    }
-    return vertex;
-  }
-
   static std::string text(const Eigen::Vector3d& p) {
-    const auto shown = [](double v) { return number_text(std::round(1e4 * v) / 1e4); };
+    const auto shown = [](double v) { return number_text(std::round(1e4 * v) / 1e4 + 0.0); };  // no -0
     return "(" + shown(p.x()) + ", " + shown(p.y()) + ", " + shown(p.z()) + ")";
   }
   static std::string edges_text(std::size_t count) {
@@ -98,7 +105,7 @@ class Check {
   void find_parts() {
     for (int f = 0; f < F_.rows(); ++f) {
       if (collapsed(f)) continue;
-      Part& part = parts_[root(F_(f, 0))];
+      Part& part = parts_[part_of_.root(F_(f, 0))];
       const Eigen::Vector3d a = at(F_(f, 0)), b = at(F_(f, 1)), c = at(F_(f, 2));
       part.area += (b - a).cross(c - a).norm() / 2;
       for (const Eigen::Vector3d& corner : {a, b, c}) part.box.extend(corner);
@@ -106,42 +113,33 @@ class Check {
     // Volumes are taken about a point of the part, so that it may lie anywhere.
     for (int f = 0; f < F_.rows(); ++f) {
       if (collapsed(f)) continue;
-      const int first = root(F_(f, 0));
+      const int first = part_of_.root(F_(f, 0));
       const Eigen::Vector3d a = at(F_(f, 0)) - at(first), b = at(F_(f, 1)) - at(first),
                             c = at(F_(f, 2)) - at(first);
       parts_[first].volume += a.dot(b.cross(c)) / 6;
     }
     for (const auto& [edge, use] : edges_) {
-      if (use.count() == 1) parts_[root(edge.first)].rim.push_back(edge);
+      if (use.count() != 1) continue;
+      parts_[part_of_.root(edge.first)].rim.push_back(edge);
+      hole_of_.join(edge.first, edge.second);  // edges of one hole hang together
     }
   }
 
-  void holes(const Part& part) const {
+  void holes(const Part& part) {
     if (part.closed()) return;
-    // Edges of one hole hang together; each hole has a middle of its own.
-    std::map<int, int> above;
-    const auto hole_of = [&](int vertex) {
-      while (above.at(vertex) != vertex) vertex = above.at(vertex);
-      return vertex;
-    };
-    for (const auto& [a, b] : part.rim) {
-      above.try_emplace(a, a);
-      above.try_emplace(b, b);
-      above[hole_of(a)] = hole_of(b);
-    }
     struct Hole {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       int edges = 0;
     };
     std::map<int, Hole> holes;
     for (const auto& [a, b] : part.rim) {
-      Hole& hole = holes[hole_of(a)];
+      Hole& hole = holes[hole_of_.root(a)];
       hole.sum += (at(a) + at(b)) / 2;
       ++hole.edges;
     }
     double opening = 0;
     for (const auto& [a, b] : part.rim) {
-      const Hole& hole = holes.at(hole_of(a));
+      const Hole& hole = holes.at(hole_of_.root(a));
       const Eigen::Vector3d middle = hole.sum / hole.edges;
       opening += (at(a) - middle).cross(at(b) - middle).norm() / 2;
     }
@@ -164,7 +162,7 @@ class Check {
   const std::string& name_;
   const Points& V_;
   const Triangles& F_;
-  std::vector<int> root_;  // of the connected part of a vertex
+  DisjointSets part_of_, hole_of_;  // of vertices
   std::map<Edge, EdgeUse> edges_;
   std::map<int, Part> parts_;
 };
