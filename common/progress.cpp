@@ -38,12 +38,13 @@ class CountingProgress : public Progress {
  public:
   void start(const std::string& stage, long total, long done) final {
     const std::scoped_lock lock(mutex_);
+    now_ = Clock::now();
     if (running_) show_end();
     stage_ = stage;
     total_ = total;
     done_ = resumed_ = done;
     note_.clear();
-    started_ = Clock::now();
+    started_ = now_;
     running_ = true;
     show_start();
   }
@@ -53,6 +54,7 @@ class CountingProgress : public Progress {
     if (!running_) return;
     done_ += units;
     note_ = note;
+    now_ = Clock::now();
     show_advance();
   }
 
@@ -60,6 +62,7 @@ class CountingProgress : public Progress {
     const std::scoped_lock lock(mutex_);
     if (!running_) return;
     running_ = false;
+    now_ = Clock::now();
     show_end();
   }
 
@@ -68,7 +71,7 @@ class CountingProgress : public Progress {
   virtual void show_advance() = 0;
   virtual void show_end() = 0;  // also when the work was given up
 
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
+  double elapsed() const { return std::chrono::duration<double>(now_ - started_).count(); }
   double remaining() const { return remaining_seconds(elapsed(), total_, done_, resumed_); }
   double share() const { return total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0; }
   std::string count_text() const { return std::to_string(done_) + "/" + std::to_string(total_); }
@@ -77,7 +80,7 @@ class CountingProgress : public Progress {
   std::string stage_, note_;
   long total_ = 0, done_ = 0, resumed_ = 0;
   bool running_ = false;
-  Clock::time_point started_;
+  Clock::time_point started_, now_;  // now: of the last call, so that the numbers of a line fit together
 };
 
 class BarProgress final : public CountingProgress {

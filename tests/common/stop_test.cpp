@@ -40,30 +40,29 @@ TEST(Stop, SignalsBecomeExitCodes) {
   EXPECT_EQ(exit_code_after(SIGXFSZ), 0);
 }
 
-// For the thread sanitizer too.
-TEST(Stop, EveryThreadSeesASignalThatOneGets) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    install_stop_handlers();
-    std::array<bool, 2> stopped = {};
-    {
-      std::vector<std::jthread> threads;
-      for (bool& mine : stopped) {
-        threads.emplace_back([&mine] {
-          try {
-            for (;;) check_stop();
-          } catch (const Error& error) {
-            mine = error.kind() == ErrorKind::stopped;
-          }
-        });
-      }
-      threads.emplace_back([] { ::raise(SIGTERM); });
+// The exit code that two threads at work make of a signal that a third one gets.
+[[noreturn]] void exit_when_all_stop() {
+  install_stop_handlers();
+  std::array<bool, 2> stopped = {};
+  {
+    std::vector<std::jthread> threads;
+    for (bool& mine : stopped) {
+      threads.emplace_back([&mine] {
+        try {
+          for (;;) check_stop();
+        } catch (const Error& error) {
+          mine = error.kind() == ErrorKind::stopped;
+        }
+      });
     }
-    ::_exit(stopped[0] && stopped[1] ? 0 : 1);
+    threads.emplace_back([] { ::raise(SIGTERM); });
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  ::_exit(stopped[0] && stopped[1] ? 75 : 1);
+}
+
+TEST(Stop, EveryThreadSeesASignalThatOneGets) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a process of its own, not a fork of many threads
+  EXPECT_EXIT(exit_when_all_stop(), ::testing::ExitedWithCode(75), "");
 }
 
 }  // namespace
