@@ -6,6 +6,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <thread>
 #include <vector>
 
@@ -57,7 +58,7 @@ TEST(Stop, SignalsBecomeExitCodes) {
     }
     threads.emplace_back([] { ::raise(SIGTERM); });
   }
-  ::_exit(stopped[0] && stopped[1] ? 75 : 1);
+  std::exit(stopped[0] && stopped[1] ? 75 : 1);
 }
 
 TEST(Stop, EveryThreadSeesASignalThatOneGets) {
