@@ -133,11 +133,13 @@ Parts time_parts(const BodyModel& body, const std::vector<Collider>& colliders, 
   rhs << goals.G.transpose(), zero, zero;
   DeformedPoint at = problem.deformed_point(state.x);
   RestPoint rest = problem.rest_point(state.q, true);
+  const Eigen::VectorXd c = problem.residual(at, rest);
   double sink = 0;
 
-  // One accepted iteration of the SQP: linearise, solve, one trial, derivatives at the new point.
+  // One accepted iteration of the SQP: linearise (c is known from the last trial), solve, one trial,
+  // derivatives at the new point.
   const auto iteration = [&] {
-    const BlockSolver block(problem, at, rest, false, workspace);
+    const BlockSolver block(problem, at, rest, c, false, workspace);
     if (!block.definite()) return;
     sink += block.decrement();
     const Eigen::VectorXd dq = block.step_q(0), dx = block.step_x(dq);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "sim/elastic/measure_family.h"
 #include "sim/elastic/packet.h"
+#include "sim/solve/dense_product.h"
 
 namespace vivify::sim {
 
@@ -40,31 +42,36 @@ class FamilyOf final : public MeasureFamily {
   int components() const override { return kComponents; }
   int parameters() const override { return kParameters; }
 
-  void values(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s) const override {
-    s.resize(value_count());
-    for (int first = 0; first < size(); first += kLane) {
-      store_values(Measure::template values<T>(load(side, first, x), constants(first)), first, s);
+  [[gnu::flatten]] void values(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s) const override {
+    s.resize(kComponents * stencil_count(side));
+    for (int first = 0; first < stencil_count(side); first += kLane) {
+      store_values(side, Measure::template values<T>(load(side, first, x), constants(first)), first, s);
     }
+    spread_to_terms(side, s);
   }
 
-  void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s, Eigen::VectorXd& g) const override {
-    s.resize(value_count());
-    g.resize(blocks() * kGradient);
-    for (int first = 0; first < size(); first += kLane) {
+  [[gnu::flatten]] void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s,
+                                  Eigen::VectorXd& g) const override {
+    s.resize(kComponents * stencil_count(side));
+    g.resize(blocks(side) * kGradient);
+    for (int first = 0; first < stencil_count(side); first += kLane) {
       const Stencil stencil = load(side, first, x);
       const Parameters parameters = constants(first);
-      store_values(Measure::template values<T>(stencil, parameters), first, s);
+      store_values(side, Measure::template values<T>(stencil, parameters), first, s);
       store_gradients(Measure::template gradients<T>(stencil, parameters), first, g);
     }
+    spread_to_terms(side, s);
   }
 
-  void scatter(Side side, const Eigen::VectorXd& g, const Eigen::VectorXd& w,
-               Eigen::VectorXd& out) const override {
-    for (int first = 0; first < size(); first += kLane) {
-      const Direction sum = load_gradients(first, g).lazyProduct(load_values(first, w));
-      for (int k = 0; k < lanes(first); ++k) {
-        const int* points = stencil_of(side, first + k);
-        for (int r = 0; r < kSize; ++r) out[kDim * points[r / kDim] + r % kDim] += lane(sum[r], k);
+  [[gnu::flatten]] void scatter(Side side, const Eigen::VectorXd& g, const Eigen::VectorXd& w,
+                                Eigen::VectorXd& out) const override {
+    Eigen::VectorXd sums;
+    const Eigen::VectorXd& weights = sum_terms(side, w, sums);
+    for (int first = 0; first < stencil_count(side); first += kLane) {
+      const Direction sum = load_gradients(first, g).lazyProduct(load_values(side, first, weights));
+      for (int n = 0; n < kPoints; ++n) {
+        add_lanes<kDim>(sum.data() + kDim * n, lanes(side, first),
+                        [&](int k) { return out.data() + kDim * stencil_of(side, first + k)[n]; });
       }
     }
   }
@@ -72,44 +79,41 @@ class FamilyOf final : public MeasureFamily {
   RowMatrixXd gather(Side side, const Eigen::VectorXd& g, const RowMatrixXd& Y) const override {
     const Eigen::Index columns = Y.cols();
     RowMatrixXd result(value_count(), columns);
-    std::array<const double*, kSize> rows;
-    std::array<double, kSize> weights;
-    for (int i = 0; i < size(); ++i) {
-      const int* points = stencil_of(side, i);
-      for (int r = 0; r < kSize; ++r) rows[r] = Y.data() + (kDim * points[r / kDim] + r % kDim) * columns;
+    for (int i = 0; i < stencil_count(side); ++i) {
+      const int begin = first_term(side, i), end = first_term(side, i + 1);
+      double* out = result.data() + kComponents * begin * columns;
+      const double* gradients = g.data() + i / kLane * kGradient + i % kLane;
       for (int c = 0; c < kComponents; ++c) {
-        for (int r = 0; r < kSize; ++r) weights[r] = gradient_entry(g, i, c, r);
-        double* out = result.data() + (kComponents * i + c) * columns;
-        Eigen::Index column = 0;
-        for (; column + 2 * kLane <= columns; column += 2 * kLane) {
-          combine<2>(rows, weights, column, out);
-        }
-        for (; column + kLane <= columns; column += kLane) combine<1>(rows, weights, column, out);
-        for (; column < columns; ++column) {
-          double sum = 0;
-          for (int r = 0; r < kSize; ++r) sum += weights[r] * rows[r][column];
-          out[column] = sum;
-        }
+        combine_rows<kPoints, kDim>(Y.data(), stencil_of(side, i), gradients + c * kSize * kLane, kLane,
+                                    columns, out + c * columns);
+      }
+      for (int term = begin + 1; term < end; ++term) {
+        std::copy_n(out, kComponents * columns, result.data() + kComponents * term * columns);
       }
     }
     return result;
   }
 
-  void add_hessians(const Eigen::VectorXd& x, const Eigen::VectorXd& g, const Eigen::VectorXd& a,
-                    const Eigen::VectorXd& b, SymmetricMatrix& matrix) const override {
-    for (int first = 0; first < size(); first += kLane) {
-      const Gradients gradients = load_gradients(first, g);
-      Hessian block = Measure::template hessian<T>(load(Side::deformed, first, x), constants(first),
-                                                   load_values(first, b));
-      add_outer(gradients, gradients, first, a, block);
-      add_block(first, block, matrix);
+  [[gnu::flatten]] void add_hessians(const Eigen::VectorXd& x, const Eigen::VectorXd& g,
+                                     const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                                     SymmetricMatrix& matrix) const override {
+    Eigen::VectorXd sums_a, sums_b;
+    const Eigen::VectorXd& slopes = sum_terms(Side::deformed, a, sums_a);
+    const Eigen::VectorXd& stresses = sum_terms(Side::deformed, b, sums_b);
+    for (int first = 0; first < stencil_count(Side::deformed); first += kLane) {
+      const Gradients gradients = load_gradients(first, g), scaled = scale(gradients, first, slopes);
+      const Hessian H = Measure::template hessian<T>(load(Side::deformed, first, x), constants(first),
+                                                     load_values(Side::deformed, first, stresses));
+      add_block(first, matrix, [&](int row, int column) -> T {
+        return H(row, column) + outer(gradients, row, scaled, column);
+      });
     }
   }
 
   void hessian_products(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
                         Eigen::VectorXd& Hl) const override {
-    Hl.resize(blocks() * kGradient);
-    for (int first = 0; first < size(); first += kLane) {
+    Hl.resize(blocks(Side::deformed) * kGradient);
+    for (int first = 0; first < stencil_count(Side::deformed); first += kLane) {
       const Stencil stencil = load(Side::deformed, first, x);
       store_gradients(products(stencil, constants(first), load_flat(first, l)), first, Hl);
     }
@@ -118,16 +122,24 @@ class FamilyOf final : public MeasureFamily {
   void add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& g, const Eigen::VectorXd& a,
                    const Eigen::VectorXd& b, const Eigen::VectorXd& db, const Eigen::VectorXd& l,
                    SymmetricMatrix& matrix) const override {
-    for (int first = 0; first < size(); first += kLane) {
+    Eigen::VectorXd sums_a, sums_b, sums_db;
+    const Eigen::VectorXd& slopes = sum_terms(Side::deformed, a, sums_a);
+    const Eigen::VectorXd& stresses = sum_terms(Side::deformed, b, sums_b);
+    const Eigen::VectorXd& stress_rates = sum_terms(Side::deformed, db, sums_db);
+    for (int first = 0; first < stencil_count(Side::deformed); first += kLane) {
       const Stencil stencil = load(Side::deformed, first, x);
       const Parameters parameters = constants(first);
       const Direction direction = load_flat(first, l);
       const Gradients gradients = load_gradients(first, g), rates = products(stencil, parameters, direction);
-      Hessian block = Measure::template hessian<T>(stencil, parameters, load_values(first, db)) +
-                      Measure::template third<T>(stencil, parameters, load_values(first, b), direction);
-      add_outer(gradients, rates, first, a, block);
-      add_outer(rates, gradients, first, a, block);
-      add_block(first, block, matrix);
+      const Gradients scaled = scale(gradients, first, slopes), scaled_rates = scale(rates, first, slopes);
+      const Hessian H = Measure::template hessian<T>(stencil, parameters,
+                                                     load_values(Side::deformed, first, stress_rates)) +
+                        Measure::template third<T>(stencil, parameters,
+                                                   load_values(Side::deformed, first, stresses), direction);
+      add_block(first, matrix, [&](int row, int column) -> T {
+        return H(row, column) + outer(gradients, row, scaled_rates, column) +
+               outer(rates, row, scaled, column);
+      });
     }
   }
 
@@ -136,9 +148,9 @@ class FamilyOf final : public MeasureFamily {
     RowMatrixXd local(kSize, L.cols());
     Eigen::Matrix<double, kSize, kSize> H;
     for (int first = 0; first < size(); first += kLane) {
-      const Hessian block =
-          Measure::template hessian<T>(load(Side::rest, first, X), constants(first), load_values(first, w));
-      for (int k = 0; k < lanes(first); ++k) {
+      const Hessian block = Measure::template hessian<T>(load(Side::rest, first, X), constants(first),
+                                                         load_values(Side::rest, first, w));
+      for (int k = 0; k < lanes(Side::rest, first); ++k) {
         const int* points = stencil_of(Side::rest, first + k);
         for (int r = 0; r < kSize; ++r) {
           local.row(r) = L.row(kDim * points[r / kDim] + r % kDim);
@@ -152,20 +164,21 @@ class FamilyOf final : public MeasureFamily {
  private:
   static constexpr int kGradient = kSize * kComponents * kLane;  // numbers per block
 
-  Eigen::Index blocks() const { return (size() + kLane - 1) / kLane; }
-  int lanes(int first) const { return std::min(kLane, size() - first); }
-  const int* stencil_of(Side side, int i) const { return stencils_[side == Side::rest].data() + kPoints * i; }
+  Eigen::Index blocks(Side side) const { return (stencil_count(side) + kLane - 1) / kLane; }
+  int lanes(Side side, int first) const { return std::min(kLane, stencil_count(side) - first); }
 
-  // Lanes beyond the last term repeat it; what they give is not used.
-  int term(int first, int k) const { return std::min(first + k, size() - 1); }
+  // Lanes beyond the last stencil repeat it; what they give is not used.
+  int stencil_at(Side side, int first, int k) const { return std::min(first + k, stencil_count(side) - 1); }
 
   Stencil load(Side side, int first, const Eigen::VectorXd& x) const {
     Stencil stencil;
-    for (int k = 0; k < kLane; ++k) {
-      const int* points = stencil_of(side, term(first, k));
-      for (int n = 0; n < kPoints; ++n) {
-        const double* point = x.data() + kDim * points[n];
-        for (int axis = 0; axis < kDim; ++axis) set_lane(stencil(axis, n), k, point[axis]);
+    std::array<const int*, kLane> points;
+    for (int k = 0; k < kLane; ++k) points[k] = stencil_of(side, stencil_at(side, first, k));
+    for (int n = 0; n < kPoints; ++n) {
+      std::array<const double*, kLane> point;
+      for (int k = 0; k < kLane; ++k) point[k] = x.data() + kDim * points[k][n];
+      for (int axis = 0; axis < kDim; ++axis) {
+        stencil(axis, n) = from_lanes<T>([&](int k) { return point[k][axis]; });
       }
     }
     return stencil;
@@ -178,25 +191,28 @@ class FamilyOf final : public MeasureFamily {
     return flat;
   }
 
+  // Terms with constants have a stencil of their own on either side.
   Parameters constants(int first) const {
     Parameters parameters;
-    for (int k = 0; k < kLane; ++k) {
-      for (int n = 0; n < kParameters; ++n)
-        set_lane(parameters[n], k, constants_[static_cast<std::size_t>(kParameters * term(first, k) + n)]);
+    for (int n = 0; n < kParameters; ++n) {
+      parameters[n] = from_lanes<T>([&](int k) {
+        return constants_[static_cast<std::size_t>(kParameters * stencil_at(Side::rest, first, k) + n)];
+      });
     }
     return parameters;
   }
 
-  Values load_values(int first, const Eigen::VectorXd& s) const {
+  // One value per component and stencil.
+  Values load_values(Side side, int first, const Eigen::VectorXd& s) const {
     Values values;
-    for (int k = 0; k < kLane; ++k) {
-      for (int c = 0; c < kComponents; ++c) set_lane(values[c], k, s[kComponents * term(first, k) + c]);
+    for (int c = 0; c < kComponents; ++c) {
+      values[c] = from_lanes<T>([&](int k) { return s[kComponents * stencil_at(side, first, k) + c]; });
     }
     return values;
   }
-  void store_values(const Values& values, int first, Eigen::VectorXd& s) const {
-    for (int k = 0; k < lanes(first); ++k) {
-      for (int c = 0; c < kComponents; ++c) s[kComponents * (first + k) + c] = lane(values[c], k);
+  void store_values(Side side, const Values& values, int first, Eigen::VectorXd& s) const {
+    for (int c = 0; c < kComponents; ++c) {
+      for (int k = 0; k < lanes(side, first); ++k) s[kComponents * (first + k) + c] = lane(values[c], k);
     }
   }
 
@@ -211,23 +227,6 @@ class FamilyOf final : public MeasureFamily {
     double* to = g.data() + first / kLane * kGradient;
     for (int n = 0; n < kSize * kComponents; ++n, to += kLane) store_lanes(gradients.data()[n], to);
   }
-  double gradient_entry(const Eigen::VectorXd& g, int i, int component, int row) const {
-    return g[i / kLane * kGradient + (component * kSize + row) * kLane + i % kLane];
-  }
-
-  // `Packs` packs of columns of the weighted sum of rows.
-  template <int Packs>
-  static void combine(const std::array<const double*, kSize>& rows, const std::array<double, kSize>& weights,
-                      Eigen::Index column, double* out) {
-    std::array<T, Packs> sums;
-    for (int n = 0; n < Packs; ++n) sums[n] = T(0.0);
-    for (int r = 0; r < kSize; ++r) {
-      for (int n = 0; n < Packs; ++n) {
-        sums[n] += T(weights[r]) * load_anywhere(rows[r] + column + n * kLane);
-      }
-    }
-    for (int n = 0; n < Packs; ++n) store_anywhere(sums[n], out + column + n * kLane);
-  }
 
   static Gradients products(const Stencil& stencil, const Parameters& parameters, const Direction& l) {
     Gradients result;
@@ -237,64 +236,71 @@ class FamilyOf final : public MeasureFamily {
     return result;
   }
 
-  // Lower triangle of block += Σ a_kl g_k h_lᵀ over the components of a term.
-  void add_outer(const Gradients& g, const Gradients& h, int first, const Eigen::VectorXd& a,
-                 Hessian& block) const {
-    if (a.size() == value_count()) {
-      const Values weights = load_values(first, a);
-      for (int c = 0; c < kComponents; ++c) add_outer_column(g, h.col(c) * weights[c], c, block);
-      return;
+  // Column k of the result is Σ a_kl g_l over the components of a stencil.
+  Gradients scale(const Gradients& g, int first, const Eigen::VectorXd& a) const {
+    Gradients scaled;
+    if (a.size() == kComponents * stencil_count(Side::deformed)) {
+      const Values weights = load_values(Side::deformed, first, a);
+      for (int k = 0; k < kComponents; ++k) scaled.col(k) = g.col(k) * weights[k];
+      return scaled;
     }
-    for (int c = 0; c < kComponents; ++c) {
-      Direction scaled = Direction::Zero();
-      for (int d = 0; d < kComponents; ++d) {
-        T weight(0.0);
-        for (int k = 0; k < kLane; ++k) {
-          set_lane(weight, k, a[kComponents * (kComponents * term(first, k) + c) + d]);
-        }
-        scaled += h.col(d) * weight;
+    scaled.setZero();
+    for (int k = 0; k < kComponents; ++k) {
+      for (int l = 0; l < kComponents; ++l) {
+        const T weight = from_lanes<T>([&](int lane) {
+          return a[kComponents * (kComponents * stencil_at(Side::deformed, first, lane) + k) + l];
+        });
+        scaled.col(k) += g.col(l) * weight;
       }
-      add_outer_column(g, scaled, c, block);
     }
+    return scaled;
   }
-  static void add_outer_column(const Gradients& g, const Direction& h, int component, Hessian& block) {
-    for (int column = 0; column < kSize; ++column) {
-      for (int row = column; row < kSize; ++row) block(row, column) += g(row, component) * h[column];
-    }
+  // Entry of Σ g_k h_kᵀ.
+  static T outer(const Gradients& g, int row, const Gradients& h, int column) {
+    T sum = g(row, 0) * h(column, 0);
+    for (int k = 1; k < kComponents; ++k) sum += g(row, k) * h(column, k);
+    return sum;
   }
 
-  // Adds the lower triangle of the block of every lane to the matrix, one column of a vertex block at a time.
-  void add_block(int first, const Hessian& block, SymmetricMatrix& matrix) const {
+  // Adds the lower triangle of the blocks of all lanes to the matrix, one column of a pair of points at a
+  // time.
+  template <class Entry>
+  void add_block(int first, SymmetricMatrix& matrix, const Entry& entry) const {
     static constexpr int kPairs = kPoints * (kPoints + 1) / 2;
-    double* values = matrix.values();
-    const int count = lanes(first);
-    std::array<const int*, kLane> column_of;
-    for (int k = 0; k < count; ++k) column_of[k] = columns_.data() + kPairs * kDim * (first + k);
+    const int* columns = columns_.data() + kPairs * kDim * first;
+    const auto add_column = [&](auto rows, int column, const T* entries) {
+      add_lanes<rows()>(entries, lanes(Side::deformed, first),
+                        [&](int k) { return matrix.values() + columns[kPairs * kDim * k + column]; });
+    };
     int pair = 0;
+#pragma GCC unroll 4
     for (int a = 0; a < kPoints; ++a) {
-      for (int b = 0; b <= a; ++b, ++pair) {
-        if (a == b) {
-          for (int j = 0; j < kDim; ++j) {
-            for (int i = j; i < kDim; ++i) {
-              for (int k = 0; k < count; ++k) {
-                values[column_of[k][kDim * pair + j] + i - j] += lane(block(kDim * a + i, kDim * a + j), k);
-              }
-            }
-          }
-          continue;
-        }
-        T turned(0.0);
-        for (int k = 0; k < kLane; ++k) {
-          set_lane(turned, k, turned_[static_cast<std::size_t>(kPairs * term(first, k) + pair)]);
+#pragma GCC unroll 4
+      for (int b = 0; b < a; ++b, ++pair) {
+        const T turned = from_lanes<T>([&](int k) {
+          return turned_[static_cast<std::size_t>(kPairs * stencil_at(Side::deformed, first, k) + pair)];
+        });
+        Eigen::Matrix<T, kDim, kDim> block;
+        for (int j = 0; j < kDim; ++j) {
+          for (int i = 0; i < kDim; ++i) block(i, j) = entry(kDim * a + i, kDim * b + j);
         }
         for (int j = 0; j < kDim; ++j) {
-          for (int i = 0; i < kDim; ++i) {
-            const T entry =
-                select(turned, block(kDim * a + j, kDim * b + i), block(kDim * a + i, kDim * b + j));
-            for (int k = 0; k < count; ++k) values[column_of[k][kDim * pair + j] + i] += lane(entry, k);
-          }
+          std::array<T, kDim> column;
+          for (int i = 0; i < kDim; ++i) column[i] = select(turned, block(j, i), block(i, j));
+          add_column(std::integral_constant<int, kDim>(), kDim * pair + j, column.data());
         }
       }
+      [&]<int... j>(std::integer_sequence<int, j...>) {
+        const auto add_diagonal = [&](auto rows) {
+          std::array<T, rows()> column;
+          constexpr int kColumn = kDim - rows();
+          for (int i = 0; i < rows(); ++i) column[i] = entry(kDim * a + kColumn + i, kDim * a + kColumn);
+          add_column(rows, kDim * pair + kColumn, column.data());
+        };
+        (add_diagonal(std::integral_constant<int, kDim - j>()), ...);
+      }
+      (std::make_integer_sequence<int, kDim>());
+      ++pair;
     }
   }
 
@@ -309,20 +315,6 @@ class FamilyOf final : public MeasureFamily {
     }
   }
 
-  static T load_anywhere(const double* from) {
-    if constexpr (kLane == 1) {
-      return *from;
-    } else {
-      return T(from, std::experimental::element_aligned);
-    }
-  }
-  static void store_anywhere(const T& value, double* to) {
-    if constexpr (kLane == 1) {
-      *to = value;
-    } else {
-      value.copy_to(to, std::experimental::element_aligned);
-    }
-  }
   static void load_lanes(double& value, const double* from) { value = *from; }
   static void store_lanes(double value, double* to) { *to = value; }
   static void load_lanes(Packet& value, const double* from) {

@@ -1,5 +1,6 @@
 #include "sim/elastic/measure_family.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -11,6 +12,13 @@ namespace vivify::sim {
 
 void MeasureFamily::add(std::span<const int> deformed, std::span<const int> rest, double coefficient,
                         std::span<const double> constants) {
+  const bool shared = size() > 0 && parameters() == 0 &&
+                      std::equal(deformed.begin(), deformed.end(), stencils_[0].end() - points_per_term());
+  if (!shared) {
+    measured_.insert(measured_.end(), deformed.begin(), deformed.end());
+    runs_.push_back(0);
+  }
+  runs_.back() = size() + 1;
   stencils_[0].insert(stencils_[0].end(), deformed.begin(), deformed.end());
   stencils_[1].insert(stencils_[1].end(), rest.begin(), rest.end());
   constants_.insert(constants_.end(), constants.begin(), constants.end());
@@ -28,26 +36,52 @@ void MeasureFamily::merge_equal_terms() {
   }
   stencils_[0].clear();
   stencils_[1].clear();
-  coefficients_.resize(static_cast<Eigen::Index>(merged.size()));
-  Eigen::Index i = 0;
-  for (const auto& [stencils, coefficient] : merged) {
-    stencils_[0].insert(stencils_[0].end(), stencils.first.begin(), stencils.first.end());
-    stencils_[1].insert(stencils_[1].end(), stencils.second.begin(), stencils.second.end());
-    coefficients_[i++] = coefficient;
+  coefficients_.resize(0);
+  measured_.clear();
+  runs_ = {0};
+  for (const auto& [stencils, coefficient] : merged) add(stencils.first, stencils.second, coefficient);
+}
+
+const Eigen::VectorXd& MeasureFamily::sum_terms(Side side, const Eigen::VectorXd& numbers,
+                                                Eigen::VectorXd& sums) const {
+  const int stencils = stencil_count(side);
+  if (stencils == size()) return numbers;
+  const Eigen::Index m = numbers.size() / size();
+  sums.resize(m * stencils);
+  for (int i = 0; i < stencils; ++i) {
+    const int begin = first_term(side, i), end = first_term(side, i + 1);
+    for (Eigen::Index k = 0; k < m; ++k) {
+      double sum = numbers[m * begin + k];
+      for (int term = begin + 1; term < end; ++term) sum += numbers[m * term + k];
+      sums[m * i + k] = sum;
+    }
   }
+  return sums;
+}
+
+void MeasureFamily::spread_to_terms(Side side, Eigen::VectorXd& values) const {
+  const int stencils = stencil_count(side), m = components();
+  if (stencils == size()) return;
+  Eigen::VectorXd spread(value_count());
+  for (int i = 0; i < stencils; ++i) {
+    for (int term = first_term(side, i); term < first_term(side, i + 1); ++term) {
+      for (int k = 0; k < m; ++k) spread[m * term + k] = values[m * i + k];
+    }
+  }
+  values = std::move(spread);
 }
 
 void MeasureFamily::reserve(SymmetricPattern& pattern) const {
-  const int n = points_per_term();
-  for (int i = 0; i < size(); ++i) pattern.couple(stencils_[0].data() + n * i, n);
+  for (int i = 0; i < stencil_count(Side::deformed); ++i) {
+    pattern.couple(stencil_of(Side::deformed, i), points_per_term());
+  }
 }
 
 void MeasureFamily::bind(const SymmetricPattern& pattern) {
-  const int n = points_per_term();
   columns_.clear();
   turned_.clear();
-  for (int i = 0; i < size(); ++i) {
-    pattern.append_columns(stencils_[0].data() + n * i, n, columns_, turned_);
+  for (int i = 0; i < stencil_count(Side::deformed); ++i) {
+    pattern.append_columns(stencil_of(Side::deformed, i), points_per_term(), columns_, turned_);
   }
 }
 

@@ -43,6 +43,10 @@ class MeasureFamily {
   virtual int parameters() const = 0;  // constants per term, from the reference shape
   int size() const { return static_cast<int>(coefficients_.size()); }  // #terms
   int value_count() const { return size() * components(); }
+  // Terms in a row that share their deformed stencil (and differ at rest) are measured once on that side.
+  int stencil_count(Side side) const {
+    return side == Side::rest ? size() : static_cast<int>(runs_.size()) - 1;
+  }
   const Eigen::VectorXd& coefficients() const { return coefficients_; }  // #terms
   const std::vector<int>& stencils(Side side) const {
     return stencils_[side == Side::rest];
@@ -60,7 +64,7 @@ class MeasureFamily {
   // s of every term (#values), component by component of each term. `x` is the flat vector of positions.
   virtual void values(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s) const = 0;
 
-  // s, and ∇s in the layout that the other functions take.
+  // s, and ∇s in the layout that the other functions take: per stencil.
   virtual void gradients(Side side, const Eigen::VectorXd& x, Eigen::VectorXd& s,
                          Eigen::VectorXd& g) const = 0;
 
@@ -96,11 +100,27 @@ class MeasureFamily {
   void bind(const SymmetricPattern& pattern);
 
  protected:
+  // The first of the terms of a stencil; they end where those of the next stencil begin.
+  int first_term(Side side, int stencil) const {
+    return side == Side::rest ? stencil : runs_[static_cast<std::size_t>(stencil)];
+  }
+  const int* stencil_of(Side side, int stencil) const {
+    return (side == Side::rest ? stencils_[1] : measured_).data() + points_per_term() * stencil;
+  }
+  // Numbers per term, summed over the terms of each stencil; `sums` holds them where there is anything to
+  // sum.
+  const Eigen::VectorXd& sum_terms(Side side, const Eigen::VectorXd& numbers, Eigen::VectorXd& sums) const;
+  // From values per stencil to values per term.
+  void spread_to_terms(Side side, Eigen::VectorXd& values) const;
+
   Eigen::VectorXd coefficients_;
   std::vector<int> stencils_[2];
   std::vector<double> constants_;
-  std::vector<int> columns_;    // for each term and pair of its points, where the block lies in the matrix
-  std::vector<double> turned_;  // and whether it lies there transposed
+  std::vector<int> measured_;    // deformed stencils that differ from the one before
+  std::vector<int> runs_ = {0};  // term where the run of each of them begins, and the end
+  std::vector<int> columns_;     // for each of them and pair of points, where the
+                                 // block lies in the matrix
+  std::vector<double> turned_;   // and whether it lies there transposed
   std::unique_ptr<Law> law_;
 };
 

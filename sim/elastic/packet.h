@@ -2,6 +2,7 @@
 // result depends on lane k of the operands only, and each lane gives the bits that a double would.
 #pragma once
 
+#include <immintrin.h>
 #include <Eigen/Core>
 #include <experimental/simd>
 
@@ -15,10 +16,52 @@ inline constexpr int kLanes = 1;
 template <>
 inline constexpr int kLanes<Packet> = static_cast<int>(Packet::size());
 
+// The scalar whose lane k is number(k).
+template <class T, class Number>
+T from_lanes(const Number& number) {
+  if constexpr (kLanes<T> == 1) {
+    return number(0);
+  } else {
+    return T([&](auto k) { return number(static_cast<int>(k)); });
+  }
+}
+
 inline double lane(double value, int) { return value; }
 inline double lane(const Packet& value, int k) { return value[static_cast<std::size_t>(k)]; }
-inline void set_lane(double& value, int, double v) { value = v; }
-inline void set_lane(Packet& value, int k, double v) { value[static_cast<std::size_t>(k)] = v; }
+
+// to(k)[i] += lane k of entries[i], for the first `count` lanes and kRows <= 3 entries.
+template <int kRows, class To>
+void add_lanes(const double* entries, int, const To& to) {
+  double* place = to(0);
+  for (int i = 0; i < kRows; ++i) place[i] += entries[i];
+}
+template <int kRows, class To>
+void add_lanes(const Packet* entries, int count, const To& to) {
+  static_assert(kLanes<Packet> == 4);
+  __m128d pair[4], last[4];  // entries 0 and 1, and the one that is left
+  if constexpr (kRows >= 2) {
+    const __m256d a = static_cast<__m256d>(entries[0]), b = static_cast<__m256d>(entries[1]);
+    const __m256d even = _mm256_unpacklo_pd(a, b), odd = _mm256_unpackhi_pd(a, b);
+    pair[0] = _mm256_castpd256_pd128(even);
+    pair[1] = _mm256_castpd256_pd128(odd);
+    pair[2] = _mm256_extractf128_pd(even, 1);
+    pair[3] = _mm256_extractf128_pd(odd, 1);
+  }
+  if constexpr (kRows % 2 == 1) {
+    const __m256d a = static_cast<__m256d>(entries[kRows - 1]);
+    last[0] = _mm256_castpd256_pd128(a);
+    last[2] = _mm256_extractf128_pd(a, 1);
+    last[1] = _mm_unpackhi_pd(last[0], last[0]);
+    last[3] = _mm_unpackhi_pd(last[2], last[2]);
+  }
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; ++k) {
+    if (k >= count) break;
+    double* place = to(k);
+    if constexpr (kRows >= 2) _mm_storeu_pd(place, _mm_add_pd(_mm_loadu_pd(place), pair[k]));
+    if constexpr (kRows % 2 == 1) place[kRows - 1] += _mm_cvtsd_f64(last[k]);
+  }
+}
 
 }  // namespace vivify::sim
 

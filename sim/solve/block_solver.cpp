@@ -5,9 +5,8 @@
 namespace vivify::sim {
 
 BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest,
-                         bool exact_hessian, StepWorkspace& workspace)
-    : problem_(problem), at_(at), rest_(rest), workspace_(workspace) {
-  c_ = problem.residual(at, rest);
+                         Eigen::VectorXd c, bool exact_hessian, StepWorkspace& workspace)
+    : problem_(problem), at_(at), rest_(rest), workspace_(workspace), c_(std::move(c)) {
   problem.stiffness(at, rest, workspace.D);
   definite_ = workspace.solver.factorize(workspace.D);
   if (!definite_) return;
@@ -26,6 +25,7 @@ BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, co
   rhs_ = reduced_gradient_ + Z * (G * d_);
   if (!exact_hessian) {
     K_ = problem.regularizer_gauss_newton(rest) + Z * Z.transpose();
+    cholesky_.compute(K_);
     return;
   }
   const Eigen::Index parameters = rest.q.size();
@@ -36,10 +36,12 @@ BlockSolver::BlockSolver(const StepProblem& problem, const DeformedPoint& at, co
   const Eigen::MatrixXd BF = B * F;
   K_ = problem.block_C(at, rest, lambda_) - BF - BF.transpose() + F.transpose() * (workspace.block * F) +
        Z * Z.transpose();
+  cholesky_.compute(K_);
   rhs_ += F.transpose() * (workspace.block * d_) - B * d_;
 }
 
 Eigen::VectorXd BlockSolver::solve_K(double mu, const Eigen::VectorXd& rhs) const {
+  if (mu == 0 && cholesky_.info() == Eigen::Success) return cholesky_.solve(rhs);
   Eigen::MatrixXd damped = K_;
   damped.diagonal() += mu * K_.diagonal().cwiseAbs();
   const Eigen::LLT<Eigen::MatrixXd> cholesky(damped);

@@ -3,16 +3,21 @@
 // = D⁻¹E is never formed. The multiplier is recomputed exactly, λ = −D⁻ᵀ Gᵀ(Gx − s), so that a = ∂L/∂x = 0.
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "sim/solve/forward_step.h"
 
 namespace vivify::sim {
 
 class BlockSolver {
  public:
-  // Linearises at (at, rest); `rest` needs derivatives. definite() tells whether D is positive definite;
-  // nothing else may be asked when it is not.
+  // Linearises at (at, rest), where the residual is `c`; `rest` needs derivatives. definite() tells whether D
+  // is positive definite; nothing else may be asked when it is not.
+  BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest, Eigen::VectorXd c,
+              bool exact_hessian, StepWorkspace& workspace);
   BlockSolver(const StepProblem& problem, const DeformedPoint& at, const RestPoint& rest, bool exact_hessian,
-              StepWorkspace& workspace);
+              StepWorkspace& workspace)
+      : BlockSolver(problem, at, rest, problem.residual(at, rest), exact_hessian, workspace) {}
 
   bool definite() const { return definite_; }
   const Eigen::VectorXd& residual() const { return c_; }
@@ -41,6 +46,7 @@ class BlockSolver {
   bool definite_ = false;
   Eigen::VectorXd c_, d_, lambda_, goal_residual_, regularizer_gradient_, reduced_gradient_, rhs_;
   Eigen::MatrixXd K_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;  // of K
 };
 
 }  // namespace vivify::sim

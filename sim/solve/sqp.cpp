@@ -29,9 +29,13 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
   };
   double mu = 0, gamma = 0;
   int small_gains = 0;
-  bool factorized = false;  // the workspace holds D of the solution
+  bool factorized = false;   // the workspace holds D of the solution
+  Eigen::VectorXd residual;  // of the solution; empty when it is not known
   while (solution.iterations < body.solver.max_iterations && !workspace.expired()) {
-    const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
+    if (residual.size() == 0) residual = problem.residual(solution.at, solution.rest);
+    const BlockSolver block(problem, solution.at, solution.rest, std::move(residual),
+                            body.solver.exact_hessian, workspace);
+    residual.resize(0);
     const bool is_feasible = block.residual().lpNorm<Eigen::Infinity>() <= feasible;
     if (!block.definite()) {
       if (is_feasible || !restore()) break;
@@ -105,6 +109,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
       solution.optimal = true;
       break;
     }
+    residual = std::move(c);
   }
   finish_exactly(problem, solution, workspace, factorized);
   return solution;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solve/dense_product.h"
+
 namespace vivify::sim {
 namespace {
 
@@ -170,17 +172,13 @@ Eigen::MatrixXd StepProblem::multiply_E(const DeformedPoint& at, const RestPoint
 
 Eigen::MatrixXd StepProblem::multiply_Et(const DeformedPoint& at, const RestPoint& rest,
                                          const RowMatrixXd& Y) const {
-  // Whole packets of columns go through the kernels faster.
-  const Eigen::Index columns = Y.cols(), whole = (columns + 3) / 4 * 4;
-  RowMatrixXd padded = RowMatrixXd::Zero(Y.rows(), whole);
-  padded.leftCols(columns) = Y;
-  RowMatrixXd result = RowMatrixXd::Zero(q_n_.size(), whole);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(q_n_.size(), Y.cols());
   for (std::size_t f = 0; f < body_.elastic.size(); ++f) {
     const MeasureFamily& family = *body_.elastic[f];
-    const RowMatrixXd gY = family.gather(Side::deformed, at.g[f], padded);
-    result.noalias() += rest.J[f].transpose() * family.law().couple_transposed(values(f, at, rest), gY);
+    const RowMatrixXd gY = family.gather(Side::deformed, at.g[f], Y);
+    result += transposed_product(rest.J[f], family.law().couple_transposed(values(f, at, rest), gY));
   }
-  return result.leftCols(columns);
+  return result;
 }
 
 Eigen::VectorXd StepProblem::regularizer_gradient(const RestPoint& rest) const {
@@ -199,10 +197,8 @@ Eigen::VectorXd StepProblem::regularizer_gradient(const RestPoint& rest) const {
 Eigen::MatrixXd StepProblem::regularizer_gauss_newton(const RestPoint& rest) const {
   Eigen::MatrixXd R = body_.rate_weight * Eigen::MatrixXd::Identity(q_n_.size(), q_n_.size());
   for (std::size_t f = 0; f < body_.elastic.size(); ++f) {
-    const RowMatrixXd scaled = body_.regularizer_coefficients[f].asDiagonal() * rest.J[f];
-    R.noalias() += rest.J[f].transpose() * scaled;
+    R += weighted_square(rest.J[f], body_.regularizer_coefficients[f]);
   }
-  R = (0.5 * (R + R.transpose())).eval();
   if (body_.hull.groups.empty()) return R;
   const Eigen::MatrixXd& basis = body_.rest->basis();
   Eigen::MatrixXd of_p = Eigen::MatrixXd::Zero(basis.rows(), basis.rows());
