@@ -224,6 +224,7 @@ Schema body_schema() {
       .field("model", sim::model_schema())
       .field("regularizer", sim::regularizer_schema())
       .field("contact", sim::contact_schema())
+      .field("velocity", vector("Velocity at the start.", 3).unit("m/s").initially({0, 0, 0}))
       .field("controller", sim::controller_schema())
       .field("solver", sim::solver_schema());
 }

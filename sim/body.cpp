@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -18,17 +17,10 @@
 namespace vivify::sim {
 namespace {
 
-constexpr int kMaxContactPasses = 3;     // solves of one step while contact planes still move
-constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
-constexpr double kLeastGravity = 1;      // m/s²; the weight is the unit of force even where there is none
-constexpr double kRelaxedRest = 0.8;     // a body stuck on a collapsed rest shape relaxes it by this factor
+constexpr double kLeastGravity = 1;        // m/s²; the weight is the unit of force even where there is none
 constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
 constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
-constexpr int kMaxStepSplits = 6;          // a step that cannot be solved is cut in halves so many times
 constexpr double kSqueezed = 0.1;          // of its size at rest: what a message calls a squeezed element
-constexpr double kTimeLimit = 100;  // of the median of the last steps: a step that takes longer is given up
-constexpr double kLeastTimeLimit = 10;  // s
-constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
   return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / d, d);
@@ -47,6 +39,14 @@ double regularizer_share(const MeasureFamily& family, const Value& regularizer) 
     default:
       return regularizer["stiffness"].as_number();
   }
+}
+
+// The boundary of a solid, or the whole of a shell or rod with its thickness (twice the contact layer for
+// models that have none).
+ContactSurface default_surface(const BodyInput& input, double layer) {
+  const bool solid = input.rest.element_points() == input.rest.dimension() + 1;
+  const double radius = input.model.has("thickness") ? 0.5 * input.model["thickness"].as_number() : layer;
+  return boundary_of(input.rest, solid ? 0 : radius);
 }
 
 // Throws Error(geometry) unless every element is of vertices with finite coordinates and every vertex of an
@@ -109,34 +109,47 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
   body.contact_points = input.contact_points;
   const int standing = std::max(1, count_standing_points(body.contact_points, flatten(V)));
   const double layer = input.contact["layer"].as_number() * body.height;
-  body.contact = {layer, body.weight / standing / (layer * layer), 2 * body.weight / standing / layer};
+  body.contact = {layer, body.weight / standing / (layer * layer), 2 * body.weight / standing / layer,
+                  input.contact["friction"].as_number(), input.contact["self"].as_bool()};
+
+  body.surface = input.surface ? *input.surface : default_surface(input, layer);
 
   body.pattern = std::make_unique<SymmetricPattern>(static_cast<int>(V.rows()), d);
-  for (const auto& family : body.elastic) family->reserve(*body.pattern);
-  for (int i = 0; i < V.rows(); ++i) body.pattern->couple(&i, 1);
-  const int corners = body.contact_points.corners();
-  for (int i = 0; i < body.contact_points.size(); ++i) {
-    body.pattern->couple(body.contact_points.vertices.row(i).data(), corners);
-  }
+  body.reserve(*body.pattern, 0);
   body.pattern->finish();
-  for (const auto& family : body.elastic) family->bind(*body.pattern);
-  for (int i = 0; i < body.contact_points.size(); ++i) {
-    body.pattern->append_slots(body.contact_points.vertices.row(i).data(), corners, body.contact_slots);
-  }
-  for (int i = 0; i < body.dofs(); ++i) body.diagonal_slots.push_back(body.pattern->slot(i, i));
+  body.bind(*body.pattern, 0);
   body.solver = solver_settings(input.solver);
   return body;
 }
 
+void BodyModel::reserve(SymmetricPattern& shared, int first_vertex) const {
+  for (const auto& family : elastic) family->reserve(shared, first_vertex);
+  for (int i = 0; i < mesh.V.rows(); ++i) shared.couple(&i, 1, first_vertex);
+  for (int i = 0; i < contact_points.size(); ++i) {
+    shared.couple(contact_points.vertices.row(i).data(), contact_points.corners(), first_vertex);
+  }
+}
+
+void BodyModel::bind(const SymmetricPattern& shared, int first_vertex) {
+  for (const auto& family : elastic) family->bind(shared, first_vertex);
+  contact_slots.clear();
+  for (int i = 0; i < contact_points.size(); ++i) {
+    shared.append_slots(contact_points.vertices.row(i).data(), contact_points.corners(), contact_slots,
+                        first_vertex);
+  }
+  diagonal_slots.clear();
+  const int first = dimension() * first_vertex;
+  for (int i = 0; i < dofs(); ++i) diagonal_slots.push_back(shared.slot(first + i, first + i));
+  bound_to = &shared;
+}
+
 Body::Body(const BodyInput& input, const WorldSettings& settings)
-    : settings_(settings),
-      model_(make_body_model(input, settings)),
-      rest_(flatten(model_.mesh.V)),
-      workspace_(std::make_unique<StepWorkspace>(*model_.pattern)) {
-  x_ = rest_;
-  v_ = Eigen::VectorXd::Zero(x_.size());
-  q_ = Eigen::VectorXd::Zero(model_.rest->free_parameters());
-  contact_memory_.resize(static_cast<std::size_t>(model_.contact_points.size()));
+    : settings_(settings), model_(make_body_model(input, settings)), rest_(flatten(model_.mesh.V)) {
+  state_ = {rest_, Eigen::VectorXd::Zero(rest_.size()), Eigen::VectorXd::Zero(model_.rest->free_parameters()),
+            std::vector<ContactMemory>(static_cast<std::size_t>(model_.contact_points.size()))};
+  surface_ = std::make_unique<SurfaceState>(model_.surface);
+  const int d = model_.dimension();
+  for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);
   const ControlledBody controlled{model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h};
   controller_ = make_controller(controlled, input.controller);
   const auto keyed = controller_->rest_parameters(0);
@@ -158,195 +171,59 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   }
 }
 
-StepSolution Body::solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record) {
-  const auto attempt = [&](const std::string& method) {
-    StepSolution solution =
-        find_entry(step_methods(), method, "step method").solve(problem, q_, start, *workspace_);
-    record.iterations += solution.iterations;
-    record.halvings += solution.halvings;
-    record.guards += solution.guards;
-    return solution;
-  };
-  record.method = model_.solver.method;
-  StepSolution best = attempt(record.method);
-  if (best.exact && best.optimal) return best;
-
-  record.fallback = std::max(record.fallback, 1);
-  const std::string other = record.method == "sqp" ? "reduced" : "sqp";
-  StepSolution second = attempt(other);
-  if (second.exact && (!best.exact || second.objective < best.objective)) {
-    record.method = other;
-    best = std::move(second);
-  }
-  if (best.exact) return best;
-
-  record.fallback = 2;
-  record.method = "hold";
-  for (const double keep : {1.0, kRelaxedRest, kRelaxedRest * kRelaxedRest}) {
-    for (const Eigen::VectorXd& x : {start, x_}) {
-      StepSolution hold;
-      hold.rest = problem.rest_point(keep * q_, true);
-      hold.at = problem.deformed_point(x);
-      finish_exactly(problem, hold, *workspace_);
-      if (hold.exact) return hold;
-    }
-  }
-  return best;
-}
-
 bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
   std::vector<Eigen::VectorXd> S;
   model_.rest->measures(model_.elastic, q, S, nullptr);
   const Eigen::Index n = model_.mass.size();
-  const StaticProblem problem = {model_.elastic, *model_.pattern, S, Eigen::VectorXd::Zero(x_.size()),
+  const StaticProblem problem = {model_.elastic, *model_.pattern, S, Eigen::VectorXd::Zero(state_.x.size()),
                                  std::vector<bool>(static_cast<std::size_t>(n), false)};
-  StaticSolution solution = solve_static(problem, x_, kStaticTolerance * model_.weight);
+  StaticSolution solution = solve_static(problem, state_.x, kStaticTolerance * model_.weight);
   record.method = "static";
   record.iterations += solution.iterations;
   record.residual_rel = std::max(record.residual_rel, solution.residual / model_.weight);
   if (!solution.converged) {
-    stuck_ = std::move(solution.x);
+    note_failure(std::move(solution.x));
     return false;
   }
 
   const int d = model_.dimension();
-  const Eigen::Matrix3d R = best_rotation(model_.mass, solution.x, x_);
-  const Eigen::Vector3d from = centre_of_mass(model_.mass, solution.x), to = centre_of_mass(model_.mass, x_);
+  const Eigen::Matrix3d R = best_rotation(model_.mass, solution.x, state_.x);
+  const Eigen::Vector3d from = centre_of_mass(model_.mass, solution.x),
+                        to = centre_of_mass(model_.mass, state_.x);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Vector3d y = to + R * (spatial_point(solution.x, i, d) - from);
-    for (int k = 0; k < d; ++k) x_[d * i + k] = y[k];
+    for (int k = 0; k < d; ++k) state_.x[d * i + k] = y[k];
   }
-  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (q - q_)).norm() / settings_.h);
-  q_ = q;
+  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (q - state_.q)).norm() / settings_.h);
+  state_.q = q;
   const ContactSet no_contacts;
   const Goals no_goals;
-  const StepProblem at_rest(model_, no_contacts, no_goals, x_, x_, q_, settings_.h);
-  StepSolution state;
-  state.at = at_rest.deformed_point(x_);
-  state.rest = at_rest.rest_point(q_, false);
-  state.objective = state.rest.regularizer;
-  measure(at_rest, state, record);
+  const StepProblem at_rest(model_, no_contacts, no_goals, state_.x, state_.x, state_.q, settings_.h);
+  const RestPoint rest = at_rest.rest_point(state_.q, false);
+  record.objective = rest.regularizer;
+  measure(at_rest, 0, at_rest.deformed_point(state_.x), rest, record);
   return true;
 }
 
-bool Body::advance(double h, const std::vector<Goal>& goals, const std::optional<Eigen::VectorXd>& keyed,
-                   const std::vector<Collider>& colliders, StepRecord& record) {
-  const int d = model_.dimension();
-  const Goals wanted = make_goals(goals, x_, h);
-  const Eigen::VectorXd start = x_ + h * v_;
-  Eigen::VectorXd x_tilde = start;
-  for (Eigen::Index i = 0; i < model_.mass.size(); ++i)
-    x_tilde.segment(d * i, d) += h * h * settings_.gravity.head(d);
-
-  const double fastest = unflatten(v_, d).rowwise().norm().maxCoeff() + h * settings_.gravity.norm();
-  const double reach = model_.contact.layer + 2 * h * fastest + 0.05 * model_.height;
-  ContactSet contacts(model_.contact_points, model_.contact, colliders, x_, reach, contact_memory_);
-  StepSolution solution;
-  for (int pass = 1;; ++pass) {
-    const StepProblem problem(model_, contacts, wanted, x_, x_tilde, q_, h);
-    if (keyed) {
-      record.method = "keyed";
-      solution = {};
-      solution.rest = problem.rest_point(*keyed, false);
-      solution.at = problem.deformed_point(start);
-      finish_exactly(problem, solution, *workspace_);
-    } else {
-      solution = solve(problem, start, record);
-    }
-    if (!solution.exact || pass == kMaxContactPasses ||
-        contacts.planes_hold(colliders, solution.at.x, kPlaneTolerance * model_.contact.layer))
-      break;
-    contacts =
-        ContactSet(model_.contact_points, model_.contact, colliders, solution.at.x, reach, contact_memory_);
-  }
-  record.residual_rel = std::max(record.residual_rel, solution.residual);
-  if (!solution.exact) {
-    stuck_ = std::move(solution.at.x);
-    return false;
-  }
-
-  const Eigen::VectorXd x_n = x_;
-  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (solution.rest.q - q_)).norm() / h);
-  v_ = (solution.at.x - x_) / h;
-  x_ = solution.at.x;
-  contacts.update_memory(x_, contact_memory_);
-  measure(StepProblem(model_, contacts, wanted, x_n, x_tilde, q_, h), solution, record);
-  q_ = solution.rest.q;
-  return true;
-}
-
-StepRecord Body::step(long step, const std::vector<Collider>& colliders) {
-  const auto begin = std::chrono::steady_clock::now();
-  const double processor_begin = processor_seconds();
-  double load = 0;
-  for (const ContactMemory& memory : contact_memory_) load += memory.normal_force;
-  const std::vector<Goal> goals = controller_->goals({x_, v_, load});
-  std::optional<Eigen::VectorXd> target;  // of q
+Body::Wish Body::wish(long step, double load) {
+  for (const ContactMemory& memory : state_.contacts) load += memory.normal_force;
+  Wish wish;
+  wish.goals = controller_->goals({state_.x, state_.v, load});
   if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
-    target = model_.rest->basis().transpose() * *p;
+    wish.q = model_.rest->basis().transpose() * *p;
+  } else if (controller_->passive()) {
+    wish.q = state_.q;
   }
+  return wish;
+}
 
-  const State before{x_, v_, q_, contact_memory_};
-  workspace_->deadline = step_deadline();
-  StepRecord record;
-  bool solved = false;
-  for (int splits = 0; splits <= kMaxStepSplits && !solved && !workspace_->expired(); ++splits) {
-    record.residual_rel = record.p_rate = 0;
-    record.substeps = 1 << splits;
-    solved = true;
-    for (int part = 0; part < record.substeps && solved; ++part) {
-      const double share = (part + 1.0) / record.substeps;
-      std::optional<Eigen::VectorXd> keyed;
-      if (target) keyed = (1 - share) * before.q + share * *target;
-      solved = settings_.statics ? settle(keyed.value_or(q_), record)
-                                 : advance(settings_.h / record.substeps, goals, keyed, colliders, record);
-    }
-    if (solved) break;
-    x_ = before.x;
-    v_ = before.v;
-    q_ = before.q;
-    contact_memory_ = before.contacts;
-  }
-  // Also of a step that was solved: methods that ran out of time stop early, and results must not depend on
-  // the clock.
-  if (workspace_->expired()) {
-    throw Error(ErrorKind::numerical,
-                "body '" + model_.name + "', step " + std::to_string(step) + ": not solved in " +
-                    number_text(kTimeLimit) + " times the time of the steps before",
-                "raise frames.steps_per_frame, ask for slower motion, or make the model stiffer");
-  }
-  if (!solved) {
-    throw Error(ErrorKind::numerical,
-                "body '" + model_.name + "', step " + std::to_string(step) +
-                    ": the equations of motion were not solved (residual " +
-                    number_text(record.residual_rel) + " of the weight, in steps down to a " +
-                    std::to_string(1 << kMaxStepSplits) + "th" + squeezed_element() + ")",
-                "raise frames.steps_per_frame, ask for slower motion, or make the model stiffer");
-  }
-
-  record.step = step;
-  record.t = static_cast<double>(step) * settings_.h;
-  record.body = model_.name;
-  record.phase = controller_->phase();
-  record.p_norm = p().norm();
-  record.contacts =
-      static_cast<int>(std::count_if(contact_memory_.begin(), contact_memory_.end(),
-                                     [](const ContactMemory& memory) { return memory.touching; }));
-  record.min_clearance = INFINITY;
-  for (int i = 0; i < model_.contact_points.size(); ++i) {
-    const Eigen::Vector3d y = model_.contact_points.position(i, x_);
-    for (const Collider& collider : colliders)
-      record.min_clearance = std::min(record.min_clearance, collider.nearest(y).distance);
-  }
-  record.max_penetration = std::max(0.0, -record.min_clearance);
-  const Eigen::Matrix3d R = best_rotation(model_.mass, rest_, x_);
-  record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
-  note_step_time(processor_seconds() - processor_begin);
-  wall_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return record;
+double Body::travel(double h) const {
+  return h *
+         (unflatten(state_.v, model_.dimension()).rowwise().norm().maxCoeff() + h * settings_.gravity.norm());
 }
 
 std::string Body::squeezed_element() const {
+  if (stuck_.size() == 0) return {};
   SimMesh mesh = model_.mesh;
   const Eigen::VectorXd sizes = element_sizes(mesh);
   mesh.V = unflatten(stuck_, model_.dimension());
@@ -364,48 +241,56 @@ std::string Body::squeezed_element() const {
   return text.str();
 }
 
-// None until enough steps tell how long one takes.
-double Body::step_deadline() const {
-  if (step_seconds_.size() < kFewestTimedSteps) return INFINITY;
-  std::vector<double> sorted = step_seconds_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return processor_seconds() + std::max(kTimeLimit * *middle, kLeastTimeLimit);
+void Body::finish_record(long step, const std::vector<Collider>& colliders, StepRecord& record) const {
+  record.step = step;
+  record.t = static_cast<double>(step) * settings_.h;
+  record.body = model_.name;
+  record.phase = controller_->phase();
+  record.p_norm = p().norm();
+  record.contacts +=
+      static_cast<int>(std::count_if(state_.contacts.begin(), state_.contacts.end(),
+                                     [](const ContactMemory& memory) { return memory.touching; }));
+  record.min_clearance = INFINITY;
+  for (int i = 0; i < model_.contact_points.size(); ++i) {
+    const Eigen::Vector3d y = model_.contact_points.position(i, state_.x);
+    for (const Collider& collider : colliders) {
+      const Eigen::Vector3d own = collider.moves() ? collider.pose(record.t).inverse() * y : y;
+      record.min_clearance = std::min(record.min_clearance, collider.nearest(own).distance);
+    }
+  }
+  record.max_penetration = std::max(record.max_penetration, -record.min_clearance);
+  const Eigen::Matrix3d R = best_rotation(model_.mass, rest_, state_.x);
+  record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-void Body::note_step_time(double seconds) {
-  if (step_seconds_.size() == kTimedSteps) step_seconds_.erase(step_seconds_.begin());
-  step_seconds_.push_back(seconds);
-}
-
-void Body::measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const {
+void Body::measure(const StepProblem& problem, std::size_t b, const DeformedPoint& at, const RestPoint& rest,
+                   StepRecord& record) const {
   const int d = model_.dimension();
-  record.objective = solution.objective;
-  record.com = centre_of_mass(model_.mass, x_);
-  record.vel = centre_of_mass(model_.mass, v_);
-  const Eigen::VectorXd internal = problem.internal_gradient(solution.at, solution.rest);
+  record.com = centre_of_mass(model_.mass, state_.x);
+  record.vel = centre_of_mass(model_.mass, state_.v);
+  const Eigen::VectorXd internal = problem.x_of(b, problem.internal_gradient(at, rest));
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
   record.kinetic = 0;
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) {
-    const Eigen::Vector3d f = spatial_point(internal, i, d), arm = spatial_point(x_, i, d) - record.com;
+    const Eigen::Vector3d f = spatial_point(internal, i, d), arm = spatial_point(state_.x, i, d) - record.com;
     force += f;
     torque += arm.cross(f);
-    record.kinetic += 0.5 * model_.mass[i] * v_.segment(d * i, d).squaredNorm();
+    record.kinetic += 0.5 * model_.mass[i] * state_.v.segment(d * i, d).squaredNorm();
   }
   record.internal_force = force.norm();
   record.internal_torque = torque.norm();
-  record.elastic = problem.elastic_energy(solution.at, solution.rest);
-  record.min_element_ratio = problem.smallest_element(solution.at);
+  record.elastic = problem.elastic_energy(b, at, rest);
+  record.min_element_ratio = problem.smallest_element(b, at);
 }
 
 void Body::save(Hdf5Writer& file, const std::string& group) const {
-  file.put(group + "/x", unflatten(x_, model_.dimension()));
-  file.put(group + "/v", unflatten(v_, model_.dimension()));
+  file.put(group + "/x", unflatten(state_.x, model_.dimension()));
+  file.put(group + "/v", unflatten(state_.v, model_.dimension()));
   file.put(group + "/p", p());
-  file.put(group + "/restart/q", q_);
-  RowMatrixXd contact(static_cast<Eigen::Index>(contact_memory_.size()), 6);
-  for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
-    const ContactMemory& memory = contact_memory_[i];
+  file.put(group + "/restart/q", state_.q);
+  RowMatrixXd contact(static_cast<Eigen::Index>(state_.contacts.size()), 6);
+  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
+    const ContactMemory& memory = state_.contacts[i];
     contact.row(static_cast<Eigen::Index>(i)) << memory.touching, memory.collider, memory.normal_force,
         memory.anchor.transpose();
   }
@@ -417,17 +302,17 @@ void Body::restore(const Hdf5Reader& file, const std::string& group) {
   const RowMatrixXd x = file.matrix(group + "/x"), v = file.matrix(group + "/v");
   const Eigen::VectorXd q = file.vector(group + "/restart/q");
   const RowMatrixXd contact = file.matrix(group + "/restart/contact");
-  if (x.size() != x_.size() || v.size() != v_.size() || q.size() != q_.size() ||
-      contact.rows() != static_cast<Eigen::Index>(contact_memory_.size())) {
+  if (x.size() != state_.x.size() || v.size() != state_.v.size() || q.size() != state_.q.size() ||
+      contact.rows() != static_cast<Eigen::Index>(state_.contacts.size())) {
     throw Error(ErrorKind::io, "the saved state of body '" + model_.name + "' is of another mesh",
                 "run again with --force=simulate");
   }
-  x_ = flatten(x);
-  v_ = flatten(v);
-  q_ = q;
-  for (std::size_t i = 0; i < contact_memory_.size(); ++i) {
+  state_.x = flatten(x);
+  state_.v = flatten(v);
+  state_.q = q;
+  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
     const auto row = contact.row(static_cast<Eigen::Index>(i));
-    contact_memory_[i] = {row[0] != 0, row.tail<3>().transpose(), row[2], static_cast<int>(row[1])};
+    state_.contacts[i] = {row[0] != 0, row.tail<3>().transpose(), row[2], static_cast<int>(row[1])};
   }
   controller_->restore(file.vector(group + "/restart/controller"));
 }

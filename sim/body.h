@@ -1,5 +1,5 @@
-// One controlled (or passive) deformable body: its model, its state, its controller, and the step that moves
-// it.
+// One controlled (or passive) deformable body: its model, its state and its controller. Islands
+// (sim/island.h) move it.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,9 @@
 
 #include "common/hdf5_file.h"
 #include "sim/body_model.h"
+#include "sim/contact/surface_pairs.h"
 #include "sim/control/controller.h"
-#include "sim/solve/step_method.h"
+#include "sim/solve/step_problem.h"
 #include "sim/step_record.h"
 
 namespace vivify::sim {
@@ -22,8 +23,11 @@ struct BodyInput {
   std::string rest_space = "cage";    // a name of sim/rest/rest_space.h
   Eigen::MatrixXd cage_weights;       // #V by #C: harmonic coordinates of the rest vertices (cage)
   std::vector<ExamplePose> examples;  // placed in the scene (examples, strains)
-  ContactPoints contact_points;
+  ContactPoints contact_points;       // that touch colliders
   Value model, regularizer, contact, controller, solver;
+  std::optional<ContactSurface> surface =
+      {};  // that touches other bodies; the boundary of the mesh when empty
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // at the start, m/s
 };
 
 struct WorldSettings {
@@ -44,50 +48,63 @@ class Body {
   Body(const BodyInput& input, const WorldSettings& settings);
   Body(Body&&) = delete;
 
-  const BodyModel& model() const { return model_; }
-  const Eigen::VectorXd& x() const { return x_; }  // d #V, m
-  const Eigen::VectorXd& v() const { return v_; }  // d #V, m/s
-  Eigen::VectorXd p() const { return model_.rest->basis() * q_; }
-  const Controller& controller() const { return *controller_; }
-  double wall_seconds() const { return wall_seconds_; }  // spent in step() by this process
+  struct State {
+    Eigen::VectorXd x, v;                 // d #V, m and m/s
+    Eigen::VectorXd q;                    // free rest parameters
+    std::vector<ContactMemory> contacts;  // with colliders, per contact point
+  };
 
-  // One implicit Euler step; `step` counts from 1. Throws Error(numerical) when no exact step can be found.
-  StepRecord step(long step, const std::vector<Collider>& colliders);
+  BodyModel& model() { return model_; }
+  const BodyModel& model() const { return model_; }
+  State& state() { return state_; }
+  const State& state() const { return state_; }
+  const Eigen::VectorXd& x() const { return state_.x; }
+  const Eigen::VectorXd& v() const { return state_.v; }
+  Eigen::VectorXd p() const { return model_.rest->basis() * state_.q; }
+  const Controller& controller() const { return *controller_; }
+  const SurfaceState& surface() const { return *surface_; }
+  double wall_seconds() const { return wall_seconds_; }  // of its steps in this process
+  void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
+
+  // What the body wants in a step; `step` counts from 1. Advances the controller's clock. `load`: sum of the
+  // normal forces from other bodies in the last step, N.
+  struct Wish {
+    std::vector<Goal> goals;
+    std::optional<Eigen::VectorXd> q;  // rest parameters that are given instead of sought
+  };
+  Wish wish(long step, double load);
+
+  // Moves the surface that touches other bodies to x.
+  void move_surface(const Eigen::VectorXd& x) { surface_->move_to(x); }
+  // How far a part of the body may get in a step of size h if nothing accelerates it but gravity, m.
+  double travel(double h) const;
+
+  // To the equilibrium of the rest shape at q, turned and moved as little as can be; false when none was
+  // found.
+  bool settle(const Eigen::VectorXd& q, StepRecord& record);
+  // Remembers x where a solve failed; ", with triangle 17 squeezed to 0.1 % of its size at rest" there, or
+  // empty when no element was.
+  void note_failure(Eigen::VectorXd x) { stuck_ = std::move(x); }
+  std::string squeezed_element() const;
+  // Writes down the motion and the elastic state at the end of a step of the problem's body `b`.
+  void measure(const StepProblem& problem, std::size_t b, const DeformedPoint& at, const RestPoint& rest,
+               StepRecord& record) const;
+  // Writes down the rest of the step.
+  void finish_record(long step, const std::vector<Collider>& colliders, StepRecord& record) const;
 
   // State under `group`, enough for an exact restart.
   void save(Hdf5Writer& file, const std::string& group) const;
   void restore(const Hdf5Reader& file, const std::string& group);
 
  private:
-  struct State {
-    Eigen::VectorXd x, v, q;
-    std::vector<ContactMemory> contacts;
-  };
-  // One step of size h towards the goals, or with the rest parameters `keyed`; false when no exact step was
-  // found. Adds to the record.
-  bool advance(double h, const std::vector<Goal>& goals, const std::optional<Eigen::VectorXd>& keyed,
-               const std::vector<Collider>& colliders, StepRecord& record);
-  // To the equilibrium of the rest shape at q, turned and moved as little as can be; false when none was
-  // found.
-  bool settle(const Eigen::VectorXd& q, StepRecord& record);
-  StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& start, StepRecord& record);
-  // ", with triangle 17 squeezed to 0.1 % of its size at rest" where the last solve failed; empty when none
-  // was.
-  std::string squeezed_element() const;
-  double step_deadline() const;  // s of processor_seconds()
-  void note_step_time(double seconds);
-  void measure(const StepProblem& problem, const StepSolution& solution, StepRecord& record) const;
-
   WorldSettings settings_;
   BodyModel model_;
   Eigen::VectorXd rest_;  // d #V, the shape as placed in the scene
-  std::unique_ptr<StepWorkspace> workspace_;
   std::unique_ptr<Controller> controller_;
-  Eigen::VectorXd x_, v_, q_;
+  std::unique_ptr<SurfaceState> surface_;
+  State state_;
   Eigen::VectorXd stuck_;  // x of the last solve that failed
-  std::vector<ContactMemory> contact_memory_;
   double wall_seconds_ = 0;
-  std::vector<double> step_seconds_;  // processor time of the last steps, for the time limit
 };
 
 }  // namespace vivify::sim

@@ -9,6 +9,7 @@
 
 #include "common/mesh.h"
 #include "sim/contact/contact_set.h"
+#include "sim/contact/contact_surface.h"
 #include "sim/elastic/models.h"
 #include "sim/rest/hull.h"
 #include "sim/rest/rest_space.h"
@@ -42,10 +43,19 @@ struct BodyModel {
   ContactPoints contact_points;
   ContactParameters contact;
 
-  std::unique_ptr<SymmetricPattern> pattern;
+  ContactSurface surface;  // that touches other bodies
+
+  std::unique_ptr<SymmetricPattern> pattern;  // of the body alone
+  // Where the entries of the body lie in the pattern that it is bound to.
+  const SymmetricPattern* bound_to = nullptr;
   std::vector<int> contact_slots;   // places of the block of each contact point
   std::vector<int> diagonal_slots;  // d #V
   SolverSettings solver;
+
+  // Declares the entries of the body's stiffness matrix in a pattern where its vertices begin at
+  // `first_vertex`, and remembers where they lie there.
+  void reserve(SymmetricPattern& shared, int first_vertex) const;
+  void bind(const SymmetricPattern& shared, int first_vertex);
 
   int dimension() const { return mesh.dimension(); }
   int dofs() const { return static_cast<int>(mesh.V.size()); }

@@ -27,7 +27,7 @@ Schema regularizer_schema() {
 }
 
 Schema contact_schema() {
-  return object("Contact with colliders.")
+  return object("Contact with colliders and other bodies.")
       .field(
           "points",
           integer("Points of the drawn surface that can touch.").at_least(4).at_most(100000).initially(160))
@@ -35,7 +35,12 @@ Schema contact_schema() {
              number("Thickness of the contact layer as a share of the body's height: softer when larger.")
                  .above(0)
                  .at_most(0.1)
-                 .initially(0.0015));
+                 .initially(0.0015))
+      .field("friction",
+             number("Factor of Coulomb's friction: two things that touch have the product of theirs.")
+                 .at_least(0)
+                 .initially(1))
+      .field("self", boolean("Whether the body touches itself.").initially(false));
 }
 
 Schema solver_schema() {

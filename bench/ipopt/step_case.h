@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/body.h"
+#include "sim/solve/step_method.h"
 #include "sim/solve/step_problem.h"
 
 namespace vivify::ipopt {

@@ -5,6 +5,7 @@
 
 #include "common/rng.h"
 #include "sim/body.h"
+#include "sim/solve/forward_step.h"
 #include "sim/solve/static_solve.h"
 
 namespace vivify::validation {

@@ -2,6 +2,7 @@
 #include "common/error.h"
 #include "common/hdf5_file.h"
 #include "common/stop.h"
+#include "meshing/contact_surface.h"
 #include "pipeline/body_settings.h"
 #include "pipeline/body_shape.h"
 #include "pipeline/content_key.h"
@@ -17,6 +18,19 @@ std::vector<Product> products(const Job& job) {
     products.push_back({mesh_file(body), mesh_key(job, body)});
   }
   return products;
+}
+
+// The surface with which a solid touches other bodies; rods and shells touch with themselves.
+void put_contact_surface(const Value& body, const BodyShape& shape, Hdf5Writer& file) {
+  if (shape.closed.V.rows() == 0 || body_kind(body) != BodyKind::solid) return;
+  const auto points = static_cast<int>(body["contact"]["points"].as_integer());
+  const meshing::CoarseSurface coarse =
+      meshing::coarse_contact_surface(shape.closed, {shape.mesh.V, shape.mesh.E}, points);
+  file.put("/contact/V", coarse.V);
+  file.put("/contact/F", coarse.F);
+  file.put("/contact/element", coarse.embedding.element);
+  file.put("/contact/weights", coarse.embedding.weights);
+  file.put("/contact/deviation", coarse.deviation);
 }
 
 Bytes make_body(const Scene& scene, const Value& body) {
@@ -41,6 +55,7 @@ Bytes make_body(const Scene& scene, const Value& body) {
     file.put("/repaired/F", RowMatrixXi(shape.closed.F));
     file.put("/repaired/route", shape.route);
   }
+  put_contact_surface(body, shape, file);
   if (!shape.notes.empty()) file.put("/notes", shape.notes);
   return file.image();
 }
@@ -71,6 +86,7 @@ std::string mesh_key(const Job& job, const Value& body) {
                            "triangles", "edges", "model"}) {
     key.add(part, body[part]);
   }
+  key.add("contact.points", body["contact"]["points"]);
   for (const std::filesystem::path& file : shape_files(job.scene, body)) key.add_mesh_file(file);
   return key.hex();
 }

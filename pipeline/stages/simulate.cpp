@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "common/error.h"
@@ -38,11 +39,22 @@ std::vector<Product> products(const Job& job) {
   return products;
 }
 
+// Points in elements of the mesh, with weights of their corners (#P by k).
+sim::ContactPoints embedded_points(const SimMesh& rest, const Eigen::VectorXi& element,
+                                   const RowMatrixXd& weights) {
+  sim::ContactPoints points;
+  points.dimension = rest.dimension();
+  points.vertices.resize(element.size(), rest.element_points());
+  for (Eigen::Index i = 0; i < element.size(); ++i) points.vertices.row(i) = rest.E.row(element[i]);
+  points.weights = weights;
+  return points;
+}
+
 // Points of the drawn surface, or of the rod or shell itself: vertices and middles of edges. Bodies of the
 // plane touch with their points of z = 0.
 sim::ContactPoints load_contact_points(const Value& body, const SimMesh& rest, const Hdf5Reader& mesh) {
   const auto count = static_cast<int>(body["contact"]["points"].as_integer());
-  const int corners = rest.element_points(), d = rest.dimension();
+  const int d = rest.dimension();
   meshing::Embedding embedding;
   Points surface;
   const BodyKind kind = body_kind(body);
@@ -55,9 +67,20 @@ sim::ContactPoints load_contact_points(const Value& body, const SimMesh& rest, c
     surface = mesh.matrix("/surface/V");
     if (kind == BodyKind::flat) surface.col(2).setZero();
   }
-  RowMatrixXi vertices(embedding.element.size(), corners);
-  for (Eigen::Index i = 0; i < vertices.rows(); ++i) vertices.row(i) = rest.E.row(embedding.element[i]);
-  return sim::select_contact_points(surface, vertices, embedding.weights, d, count);
+  const sim::ContactPoints points = embedded_points(rest, embedding.element, embedding.weights);
+  return sim::select_contact_points(surface, points.vertices, points.weights, d, count);
+}
+
+// The surface with which a solid touches other bodies; none for the others, which touch with their mesh.
+std::optional<sim::ContactSurface> load_contact_surface(const SimMesh& rest, const Hdf5Reader& mesh) {
+  if (!mesh.has("/contact")) return std::nullopt;
+  sim::ContactSurface surface;
+  surface.rest = mesh.matrix("/contact/V");
+  surface.faces = mesh.int_matrix("/contact/F");
+  surface.edges = sim::edges_of(surface.faces);
+  surface.points =
+      embedded_points(rest, mesh.int_vector("/contact/element"), mesh.matrix("/contact/weights"));
+  return surface;
 }
 
 sim::BodyInput load_body(const Job& job, const Value& body) {
@@ -81,6 +104,8 @@ sim::BodyInput load_body(const Job& job, const Value& body) {
   input.contact = body["contact"];
   input.controller = body["controller"];
   input.solver = body["solver"];
+  input.surface = load_contact_surface(input.rest, mesh);
+  input.velocity = body["velocity"].as_vector3();
   return input;
 }
 
@@ -261,7 +286,7 @@ std::string simulation_key(const Job& job) {
       .add("physics", scene.settings["physics"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
-    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver"}) {
+    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver", "velocity"}) {
       key.add(part, body[part]);
     }
   }

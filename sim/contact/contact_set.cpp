@@ -8,10 +8,18 @@ namespace {
 
 constexpr double kLeastPlanarNormal = 0.1;  // of a normal's part in the plane of a flat body
 
-// The nearest place of a collider as a body of that dimension meets it: flat bodies meet its section with the
-// plane z = 0. Empty where the collider faces across the plane.
-std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen::Vector3d& y, int dimension) {
-  SurfacePoint nearest = collider.nearest(y);
+// The nearest place of a collider that stands at `pose`, as a body of that dimension meets it: flat bodies
+// meet its section with the plane z = 0. Empty where the collider faces across the plane.
+std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen::Isometry3d& pose,
+                                          const Eigen::Vector3d& y, int dimension) {
+  SurfacePoint nearest;
+  if (collider.moves()) {
+    nearest = collider.nearest(pose.inverse() * y);
+    nearest.position = pose * nearest.position;
+    nearest.normal = pose.linear() * nearest.normal;
+  } else {
+    nearest = collider.nearest(y);
+  }
   if (dimension == 3) return nearest;
   nearest.normal.z() = 0;
   const double length = nearest.normal.norm();
@@ -25,17 +33,40 @@ std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen:
 
 ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& parameters,
                        const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
-                       const std::vector<ContactMemory>& memory)
+                       const std::vector<ContactMemory>& memory, double begin, double end, bool settled)
     : points_(&points), normal_{parameters.normal_stiffness, parameters.layer} {
+  std::vector<Eigen::Isometry3d> moves;  // from the place at `x` to that at the end
+  for (const Collider& collider : colliders) {
+    poses_.push_back(collider.pose(end));
+    moves.push_back(settled ? Eigen::Isometry3d::Identity() : poses_.back() * collider.pose(begin).inverse());
+  }
   for (int i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d y = points.position(i, x);
     for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
-      const std::optional<SurfacePoint> nearest = nearest_place(colliders[c], y, points.dimension);
-      if (!nearest || nearest->distance > reach) continue;
+      const Collider& collider = colliders[c];
+      const Eigen::Isometry3d& from = settled            ? poses_[c]
+                                      : collider.moves() ? collider.pose(begin)
+                                                         : poses_[c];
+      std::optional<SurfacePoint> nearest = nearest_place(collider, from, y, points.dimension);
+      if (!nearest) continue;
+      double travel = 0;
+      if (collider.moves()) {
+        const Eigen::Vector3d moved = moves[c] * nearest->position;
+        travel = (moved - nearest->position).norm();
+        nearest->position = moved;
+        nearest->normal = moves[c].linear() * nearest->normal;
+      }
+      if (nearest->distance > reach + travel) continue;
       const bool touched = memory[i].touching && memory[i].collider == c;
-      const double limit = touched ? colliders[c].friction() * memory[i].normal_force : 0.0;
-      contacts_.push_back({i, c, nearest->position, nearest->normal, memory[i].anchor,
-                           Friction(parameters.friction_stiffness, limit)});
+      const double limit = touched ? parameters.friction * collider.friction() * memory[i].normal_force : 0.0;
+      Eigen::Vector3d anchor = memory[i].anchor;
+      if (touched) {
+        const Eigen::Vector3d carried = (end - begin) * collider.surface_velocity();
+        if (!carried.isZero(0)) anchor += carried;
+        if (collider.moves()) anchor = poses_[c] * anchor;
+      }
+      contacts_.push_back(
+          {i, c, nearest->position, nearest->normal, anchor, Friction(parameters.friction_stiffness, limit)});
     }
   }
 }
@@ -118,7 +149,10 @@ bool ContactSet::planes_hold(const std::vector<Collider>& colliders, const Eigen
   for (const Contact& contact : contacts_) {
     const double assumed = distance(contact, x);
     if (assumed > normal_.layer + tolerance) continue;
-    const double actual = colliders[contact.collider].nearest(points_->position(contact.point, x)).distance;
+    const Collider& collider = colliders[contact.collider];
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    const double actual =
+        collider.nearest(collider.moves() ? poses_[contact.collider].inverse() * y : y).distance;
     if (std::abs(actual - assumed) > tolerance) return false;
   }
   return true;
@@ -139,6 +173,9 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
     if (memory[contact.point].touching && memory[contact.point].collider == contact.collider) {
       after.anchor = y - contact.friction.return_map(tangential(contact, y - contact.anchor));
     }
+    // Colliders that do not move stand at the identity.
+    if (!poses_[contact.collider].matrix().isIdentity(0))
+      after.anchor = poses_[contact.collider].inverse() * after.anchor;
   }
   memory = std::move(next);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct ContactPoints {
 // What a contact point remembers from step to step.
 struct ContactMemory {
   bool touching = false;  // the normal force was positive at the end of the last step
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  // in the collider's own frame, m
   double normal_force = 0;                           // f_n at the end of the last step, N
   int collider = -1;                                 // that it touched
 };
@@ -46,6 +47,8 @@ struct ContactParameters {
   double layer = 0;               // δ, m
   double normal_stiffness = 0;    // N/m²
   double friction_stiffness = 0;  // N/m
+  double friction = 1;            // the body's factor of Coulomb's μ: that of a pair is the product of both
+  bool self = false;              // whether the body touches itself
 };
 
 // One point against one plane, fixed for the step.
@@ -62,10 +65,12 @@ class ContactSet {
   ContactSet() = default;
 
   // Planes for every point that can reach a collider: those nearer than `reach` at `x`. Friction acts where
-  // the point touched at the end of the last step.
+  // the point touched at the end of the last step. The step is from `begin` to `end` (s): planes and anchors
+  // move with their colliders. `x` are positions of the beginning, or of the end (`settled`).
   ContactSet(const ContactPoints& points, const ContactParameters& parameters,
              const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
-             const std::vector<ContactMemory>& memory);
+             const std::vector<ContactMemory>& memory, double begin = 0, double end = 0,
+             bool settled = false);
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
@@ -102,6 +107,7 @@ class ContactSet {
                SymmetricMatrix& matrix) const;
 
   const ContactPoints* points_ = nullptr;
+  std::vector<Eigen::Isometry3d> poses_;  // of the colliders at the end of the step
   NormalForce normal_ = {0, 0};
   std::vector<Contact> contacts_;
 };

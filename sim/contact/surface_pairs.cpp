@@ -104,6 +104,7 @@ Eigen::Vector3d SurfaceState::point_normal(int p) const {
 }
 
 bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n) const {
+  if (surface_->two_sided) return true;
   const int p = surface_->edges(edge, 0), q = surface_->edges(edge, 1);
   const Eigen::Vector3d along = unit_or(point(q) - point(p), Eigen::Vector3d::Zero());
   const std::span<const int> faces = edge_sides_[edge];
@@ -119,7 +120,7 @@ bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n) const {
     normals += side_normal(face);
   }
   const bool rim = faces.size() < 2;
-  return (rim || descent >= kFlat) && (surface_->two_sided || n.dot(normals) > 0);
+  return (rim || descent >= kFlat) && n.dot(normals) > 0;
 }
 
 template <class Allow>

@@ -64,7 +64,8 @@ class SurfaceState {
   Eigen::Vector3d side_normal(int side) const;
   Eigen::Vector3d point_normal(int point) const;
   // Whether an edge is, on the side of the unit vector n (perpendicular to it), nearer than all that
-  // surrounds it: the cone of its outward normals.
+  // surrounds it: the cone of its outward normals. Shells have none: all around each edge belongs to it,
+  // because what moves over a shell may cross an edge that was not the nearest when the step began.
   bool edge_cone_has(int edge, const Eigen::Vector3d& n) const;
 
  private:

@@ -43,6 +43,9 @@ class Controller {
   // have no effect.
   virtual std::optional<Eigen::VectorXd> rest_parameters(double) const { return std::nullopt; }
 
+  // Whether the body asks for nothing and never changes its rest shape.
+  virtual bool passive() const { return false; }
+
   // What the controller is doing, for people: "thrust".
   virtual std::string phase() const = 0;
 

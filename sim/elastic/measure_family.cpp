@@ -71,17 +71,17 @@ void MeasureFamily::spread_to_terms(Side side, Eigen::VectorXd& values) const {
   values = std::move(spread);
 }
 
-void MeasureFamily::reserve(SymmetricPattern& pattern) const {
+void MeasureFamily::reserve(SymmetricPattern& pattern, int first_vertex) const {
   for (int i = 0; i < stencil_count(Side::deformed); ++i) {
-    pattern.couple(stencil_of(Side::deformed, i), points_per_term());
+    pattern.couple(stencil_of(Side::deformed, i), points_per_term(), first_vertex);
   }
 }
 
-void MeasureFamily::bind(const SymmetricPattern& pattern) {
+void MeasureFamily::bind(const SymmetricPattern& pattern, int first_vertex) {
   columns_.clear();
   turned_.clear();
   for (int i = 0; i < stencil_count(Side::deformed); ++i) {
-    pattern.append_columns(stencil_of(Side::deformed, i), points_per_term(), columns_, turned_);
+    pattern.append_columns(stencil_of(Side::deformed, i), points_per_term(), columns_, turned_, first_vertex);
   }
 }
 

@@ -95,9 +95,10 @@ class MeasureFamily {
   virtual void add_rest_hessians(const Eigen::VectorXd& X, const Eigen::VectorXd& w, const RowMatrixXd& L,
                                  Eigen::MatrixXd& out) const = 0;
 
-  // Declares the entries that add_hessians writes, and remembers where they lie.
-  void reserve(SymmetricPattern& pattern) const;
-  void bind(const SymmetricPattern& pattern);
+  // Declares the entries that add_hessians writes, and remembers where they lie, in a pattern where the
+  // body's vertices begin at `first_vertex`.
+  void reserve(SymmetricPattern& pattern, int first_vertex = 0) const;
+  void bind(const SymmetricPattern& pattern, int first_vertex = 0);
 
  protected:
   // The first of the terms of a stencil; they end where those of the next stencil begin.

@@ -18,10 +18,9 @@ ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, co
   ForwardResult result;
   result.at = problem.deformed_point(x);
   Eigen::VectorXd c = problem.residual(result.at, rest);
-  const double weight = problem.body().weight;
   double potential = problem.potential(result.at, rest);
   for (;; ++result.iterations) {
-    result.residual = c.lpNorm<Eigen::Infinity>() / weight;
+    result.residual = problem.relative_force(c);
     // A maximum may pass over what is not a number.
     const bool finite = std::isfinite(potential) && c.allFinite();
     result.converged = finite && result.residual <= tolerance;
@@ -40,7 +39,7 @@ ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, co
     const Eigen::VectorXd step = -workspace.solver.solve(c);
     const double slope = c.dot(step), before = c.norm();
     const bool rounded = result.residual <= kRoundedResidual &&
-                         step.lpNorm<Eigen::Infinity>() <= kRoundedStep * problem.body().height;
+                         problem.relative_length(step) <= kRoundedStep;
     bool accepted = false;
     double alpha = 1;
     for (int halving = 0; halving < kMaxHalvings && !accepted; ++halving, alpha *= 0.5) {
@@ -56,7 +55,7 @@ ForwardResult forward_step(const StepProblem& problem, const RestPoint& rest, co
       }
     }
     if (rounded && (!accepted || c.norm() > 0.5 * before)) {
-      result.residual = c.lpNorm<Eigen::Infinity>() / weight;
+      result.residual = problem.relative_force(c);
       result.converged = result.residual <= kRoundedResidual;
       if (result.converged) return result;
     }

@@ -15,16 +15,16 @@ constexpr double kTrialTolerance = 1e-7;
 
 StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
                            StepWorkspace& workspace) {
-  const BodyModel& body = problem.body();
+  const SolverSettings& settings = problem.solver();
   bool feasible_start = false;
   StepSolution solution = start_feasibly(problem, q, x, kTrialTolerance, workspace, &feasible_start);
   double objective = problem.objective(solution.at.x, solution.rest);
 
-  const double unit = body.weight * body.height;
+  const double unit = problem.energy_unit();
   double mu = 0;
   int small_gains = 0;
   bool factorized = false;  // the workspace holds D of the solution
-  while (feasible_start && solution.iterations < body.solver.max_iterations && !workspace.expired()) {
+  while (feasible_start && solution.iterations < settings.max_iterations && !workspace.expired()) {
     Eigen::VectorXd dq, dx, gradient;
     bool accepted = false;
     const double before = objective;
@@ -32,9 +32,9 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
     // first.
     std::vector<Eigen::VectorXd> steps_q, steps_x;
     {
-      const BlockSolver block(problem, solution.at, solution.rest, body.solver.exact_hessian, workspace);
+      const BlockSolver block(problem, solution.at, solution.rest, settings.exact_hessian, workspace);
       if (!block.definite()) break;
-      if (block.decrement() <= body.solver.decrement * unit) {
+      if (block.decrement() <= settings.decrement * unit) {
         solution.optimal = factorized = true;
         break;
       }
@@ -87,7 +87,7 @@ StepSolution solve_reduced(const StepProblem& problem, const Eigen::VectorXd& q,
     }
     if (!accepted) break;
     solution.rest = problem.rest_point(solution.rest.q, true);
-    small_gains = before - objective < body.solver.small_gain * std::abs(before) ? small_gains + 1 : 0;
+    small_gains = before - objective < settings.small_gain * std::abs(before) ? small_gains + 1 : 0;
     if (small_gains == 2) {
       solution.optimal = true;
       break;

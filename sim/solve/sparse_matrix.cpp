@@ -4,10 +4,10 @@
 
 namespace vivify::sim {
 
-void SymmetricPattern::couple(const int* vertices, int count) {
+void SymmetricPattern::couple(const int* vertices, int count, int first) {
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b < count; ++b) {
-      if (vertices[a] >= vertices[b]) blocks_.emplace(vertices[b], vertices[a]);
+      if (vertices[a] >= vertices[b]) blocks_.emplace(first + vertices[b], first + vertices[a]);
     }
   }
 }
@@ -35,23 +35,25 @@ int SymmetricPattern::slot(int row, int column) const {
   return found != end && *found == row ? static_cast<int>(found - zeros_.innerIndexPtr()) : -1;
 }
 
-void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<int>& slots) const {
+void SymmetricPattern::append_slots(const int* vertices, int count, std::vector<int>& slots,
+                                    int first) const {
   const int d = dimension_;
   for (int column = 0; column < d * count; ++column) {
     for (int row = column; row < d * count; ++row) {
-      const int global_row = d * vertices[row / d] + row % d,
-                global_column = d * vertices[column / d] + column % d;
+      const int global_row = d * (first + vertices[row / d]) + row % d,
+                global_column = d * (first + vertices[column / d]) + column % d;
       slots.push_back(slot(std::max(global_row, global_column), std::min(global_row, global_column)));
     }
   }
 }
 
 void SymmetricPattern::append_columns(const int* vertices, int count, std::vector<int>& columns,
-                                      std::vector<double>& turned) const {
+                                      std::vector<double>& turned, int first) const {
   const int d = dimension_;
   for (int a = 0; a < count; ++a) {
     for (int b = 0; b <= a; ++b) {
-      const int row = std::max(vertices[a], vertices[b]), column = std::min(vertices[a], vertices[b]);
+      const int row = first + std::max(vertices[a], vertices[b]),
+                column = first + std::min(vertices[a], vertices[b]);
       turned.push_back(vertices[a] < vertices[b] ? 1 : 0);
       for (int k = 0; k < d; ++k) columns.push_back(slot(d * row + (a == b ? k : 0), d * column + k));
     }

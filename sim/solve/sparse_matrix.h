@@ -14,8 +14,8 @@ class SymmetricPattern {
  public:
   SymmetricPattern(int vertex_count, int dimension) : vertex_count_(vertex_count), dimension_(dimension) {}
 
-  // All pairs of the given vertices may be coupled.
-  void couple(const int* vertices, int count);
+  // All pairs of the given vertices may be coupled. Here and below `first` is added to the vertices.
+  void couple(const int* vertices, int count, int first = 0);
   // Ends the collection; needed before slot().
   void finish();
 
@@ -25,12 +25,12 @@ class SymmetricPattern {
   // the pattern.
   int slot(int row, int column) const;
   // Places of the lower triangle of the block of `count` vertices, column by column of it.
-  void append_slots(const int* vertices, int count, std::vector<int>& slots) const;
+  void append_slots(const int* vertices, int count, std::vector<int>& slots, int first = 0) const;
   // Where the columns of the vertex blocks (a, b), a >= b, of `count` vertices begin: for each pair and
   // column the place of its first entry (on the diagonal that of the diagonal itself). `turned` has a 1 for
   // pairs that are stored transposed, because vertex a comes before vertex b in the matrix.
-  void append_columns(const int* vertices, int count, std::vector<int>& columns,
-                      std::vector<double>& turned) const;
+  void append_columns(const int* vertices, int count, std::vector<int>& columns, std::vector<double>& turned,
+                      int first = 0) const;
 
   // A matrix of zeros with this pattern.
   const Eigen::SparseMatrix<double>& zeros() const { return zeros_; }

@@ -16,11 +16,13 @@ constexpr double kMeritMargin = 1.2;
 
 StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& x,
                        StepWorkspace& workspace) {
-  const BodyModel& body = problem.body();
+  const SolverSettings& settings = problem.solver();
   StepSolution solution = start_feasibly(problem, q, x, kStartTolerance, workspace);
 
-  const double unit = body.weight * body.height;
-  const double feasible = 10 * kStartTolerance * body.weight;
+  const double unit = problem.energy_unit();
+  const auto feasible = [&](const Eigen::VectorXd& c) {
+    return problem.relative_force(c) <= 10 * kStartTolerance;
+  };
   const auto restore = [&] {
     ForwardResult forward = forward_step(problem, solution.rest, solution.at.x, kStartTolerance, workspace);
     solution.forward_iterations += forward.iterations;
@@ -31,17 +33,17 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
   int small_gains = 0;
   bool factorized = false;   // the workspace holds D of the solution
   Eigen::VectorXd residual;  // of the solution; empty when it is not known
-  while (solution.iterations < body.solver.max_iterations && !workspace.expired()) {
+  while (solution.iterations < settings.max_iterations && !workspace.expired()) {
     if (residual.size() == 0) residual = problem.residual(solution.at, solution.rest);
-    const BlockSolver block(problem, solution.at, solution.rest, std::move(residual),
-                            body.solver.exact_hessian, workspace);
+    const BlockSolver block(problem, solution.at, solution.rest, std::move(residual), settings.exact_hessian,
+                            workspace);
     residual.resize(0);
-    const bool is_feasible = block.residual().lpNorm<Eigen::Infinity>() <= feasible;
+    const bool is_feasible = feasible(block.residual());
     if (!block.definite()) {
       if (is_feasible || !restore()) break;
       continue;
     }
-    if (block.decrement() <= body.solver.decrement * unit) {
+    if (block.decrement() <= settings.decrement * unit) {
       solution.optimal = factorized = is_feasible;
       if (is_feasible || !restore()) break;
       continue;  // only the equations of motion are left to be solved
@@ -102,8 +104,7 @@ StepSolution solve_sqp(const StepProblem& problem, const Eigen::VectorXd& q, con
 
     solution.rest = problem.rest_point(solution.rest.q, true);
     const double gain = objective - problem.objective(solution.at.x, solution.rest);
-    const bool small =
-        std::abs(gain) < body.solver.small_gain * objective && c.lpNorm<Eigen::Infinity>() <= feasible;
+    const bool small = std::abs(gain) < settings.small_gain * objective && feasible(c);
     small_gains = small ? small_gains + 1 : 0;
     if (small_gains == 2) {
       solution.optimal = true;

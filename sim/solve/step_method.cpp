@@ -19,10 +19,8 @@ double raise_damping(double mu) { return std::max(1e-2, 6 * mu); }
 double lower_damping(double mu) { return mu < 1e-6 ? 0 : mu / 5; }
 
 Eigen::VectorXd limit_change(const StepProblem& problem, Eigen::VectorXd dq) {
-  const RestSpace& space = *problem.body().rest;
-  const double largest = (space.basis() * dq).lpNorm<Eigen::Infinity>();
-  const double allowed = kLargestChange * space.unit();
-  if (largest > allowed) dq *= allowed / largest;
+  const double largest = problem.relative_change(dq);
+  if (largest > kLargestChange) dq *= kLargestChange / largest;
   return dq;
 }
 

@@ -6,6 +6,7 @@ namespace {
 class RestController final : public Controller {
  public:
   std::vector<Goal> goals(const Observation&) override { return {}; }
+  bool passive() const override { return true; }
   std::string phase() const override { return "rest"; }
   Eigen::VectorXd state() const override { return {}; }
   void restore(const Eigen::VectorXd&) override {}

@@ -1,0 +1,163 @@
+#include "sim/contact/pair_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vivify::sim {
+namespace {
+
+Eigen::Vector3d tangential(const Eigen::Vector3d& normal, const Eigen::Vector3d& v) {
+  return v - normal * normal.dot(v);
+}
+
+void add_forces(const Stencil& stencil, const Eigen::Vector3d& g, int dimension, Eigen::VectorXd& gradient) {
+  for (std::size_t k = 0; k < stencil.vertices.size(); ++k) {
+    gradient.segment(dimension * stencil.vertices[k], dimension) += stencil.weights[k] * g.head(dimension);
+  }
+}
+
+// matrix += (w wᵀ) ⊗ block for the stencil whose blocks begin at `slot`; returns the end of its slots.
+const int* add_block(const Stencil& stencil, const Eigen::Matrix3d& block, int dimension, const int* slot,
+                     double* values) {
+  const std::size_t count = stencil.vertices.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double weight = stencil.weights[i] * stencil.weights[j];
+      for (int column = 0; column < dimension; ++column, ++slot) {
+        double* entry = values + *slot;
+        for (int row = i == j ? column : 0; row < dimension; ++row) *entry++ += weight * block(row, column);
+      }
+    }
+  }
+  return slot;
+}
+
+}  // namespace
+
+void Stencil::add(const ContactPoints& points, const MaterialPlace& place, int first_vertex, double sign) {
+  for (int k = 0; k < 3; ++k) {
+    if (place.points[k] < 0 || place.weights[k] == 0) continue;
+    for (int c = 0; c < points.corners(); ++c) {
+      const double weight = sign * place.weights[k] * points.weights(place.points[k], c);
+      if (weight == 0) continue;
+      const int vertex = first_vertex + points.vertices(place.points[k], c);
+      const auto found = std::find(vertices.begin(), vertices.end(), vertex);
+      if (found == vertices.end()) {
+        vertices.push_back(vertex);
+        weights.push_back(weight);
+      } else {
+        weights[static_cast<std::size_t>(found - vertices.begin())] += weight;
+      }
+    }
+  }
+}
+
+Eigen::Vector3d Stencil::position(const Eigen::VectorXd& x, int dimension) const {
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    y.head(dimension) += weights[k] * x.segment(dimension * vertices[k], dimension);
+  }
+  return y;
+}
+
+void PairContacts::reserve(SymmetricPattern& pattern) const {
+  for (const PairContact& contact : contacts_) {
+    for (const Stencil* stencil : {&contact.gap, &contact.slip}) {
+      pattern.couple(stencil->vertices.data(), static_cast<int>(stencil->vertices.size()));
+    }
+  }
+}
+
+bool PairContacts::bind(const SymmetricPattern& pattern) {
+  slots_.clear();
+  std::vector<double> turned;  // blocks of contacts are symmetric
+  for (const PairContact& contact : contacts_) {
+    for (const Stencil* stencil : {&contact.gap, &contact.slip}) {
+      pattern.append_columns(stencil->vertices.data(), static_cast<int>(stencil->vertices.size()), slots_,
+                             turned);
+    }
+  }
+  return std::find(slots_.begin(), slots_.end(), -1) == slots_.end();
+}
+
+double PairContacts::distance(const PairContact& contact, const Eigen::VectorXd& x) const {
+  return contact.normal.dot(contact.gap.position(x, dimension_)) - contact.thickness;
+}
+
+double PairContacts::normal_force(const PairContact& contact, const Eigen::VectorXd& x) const {
+  return contact.law.force(distance(contact, x));
+}
+
+Eigen::Vector3d PairContacts::slip_offset(const PairContact& contact, const Eigen::VectorXd& x) const {
+  return tangential(contact.normal, contact.slip.position(x, dimension_) - contact.offset);
+}
+
+Eigen::Vector3d PairContacts::force_on_a(const PairContact& contact, const Eigen::VectorXd& x) const {
+  return normal_force(contact, x) * contact.normal - contact.friction.gradient(slip_offset(contact, x));
+}
+
+double PairContacts::energy(const Eigen::VectorXd& x) const {
+  double sum = 0;
+  for (const PairContact& contact : contacts_) {
+    sum += contact.law.energy(distance(contact, x)) + contact.friction.energy(slip_offset(contact, x));
+  }
+  return sum;
+}
+
+void PairContacts::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const {
+  for (const PairContact& contact : contacts_) {
+    add_forces(contact.gap, -normal_force(contact, x) * contact.normal, dimension_, gradient);
+    add_forces(contact.slip, contact.friction.gradient(slip_offset(contact, x)), dimension_, gradient);
+  }
+}
+
+void PairContacts::add_hessian(const Eigen::VectorXd& x, SymmetricMatrix& matrix) const {
+  const int* slot = slots_.data();
+  for (const PairContact& contact : contacts_) {
+    const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
+    const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
+    slot = add_block(contact.gap, contact.law.second(distance(contact, x)) * nn, dimension_, slot,
+                     matrix.values());
+    slot = add_block(contact.slip, T * contact.friction.hessian(slip_offset(contact, x)) * T, dimension_,
+                     slot, matrix.values());
+  }
+}
+
+void PairContacts::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
+                               SymmetricMatrix& matrix) const {
+  const int* slot = slots_.data();
+  for (const PairContact& contact : contacts_) {
+    const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
+    const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
+    const double along = contact.normal.dot(contact.gap.position(l, dimension_));
+    slot = add_block(contact.gap, contact.law.third(distance(contact, x)) * along * nn, dimension_, slot,
+                     matrix.values());
+    const Eigen::Vector3d across = tangential(contact.normal, contact.slip.position(l, dimension_));
+    slot = add_block(contact.slip, T * contact.friction.third(slip_offset(contact, x), across) * T,
+                     dimension_, slot, matrix.values());
+  }
+}
+
+std::vector<PairMemory> PairContacts::memory(const Eigen::VectorXd& x) const {
+  std::vector<PairMemory> memory;
+  for (const PairContact& contact : contacts_) {
+    const double force = normal_force(contact, x);
+    if (force <= 0) continue;
+    PairMemory after = {contact.identity,    contact.anchor_a, contact.anchor_b,
+                        contact.offset,      contact.normal,   force,
+                        distance(contact, x)};
+    const Eigen::Vector3d slip = slip_offset(contact, x), kept = contact.friction.return_map(slip);
+    if (kept != slip || contact.friction.slip_limit() == 0) {
+      // The anchor follows: it is where the surfaces are nearest now.
+      after.a = contact.place_a;
+      after.b = contact.place_b;
+      after.offset = tangential(contact.normal, contact.gap.position(x, dimension_)) - kept;
+    }
+    memory.push_back(std::move(after));
+  }
+  std::sort(memory.begin(), memory.end(),
+            [](const PairMemory& a, const PairMemory& b) { return a.identity < b.identity; });
+  return memory;
+}
+
+}  // namespace vivify::sim
