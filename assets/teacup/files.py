@@ -9,7 +9,7 @@ import numpy as np
 FLOAT, UINT16, UINT32 = 5126, 5123, 5125
 
 
-def glb_bytes(name, parts, images=()):
+def glb_bytes(name, parts, images=(), generator="assets/teacup/make_teacup.py"):
     """Bytes of a GLB with one mesh and one primitive per part.
 
     parts: list of dicts with `name`, `positions` (#V by 3), `triangles` (#F by 3, counter-clockwise outward), `color`
@@ -49,7 +49,7 @@ def glb_bytes(name, parts, images=()):
             },
         })
     document = {
-        "asset": {"version": "2.0", "generator": "vivify assets/teacup/make_teacup.py"},
+        "asset": {"version": "2.0", "generator": "vivify " + generator},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "name": name}],
