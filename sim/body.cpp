@@ -268,7 +268,7 @@ void Body::measure(const StepProblem& problem, std::size_t b, const DeformedPoin
   const int d = model_.dimension();
   record.com = centre_of_mass(model_.mass, state_.x);
   record.vel = centre_of_mass(model_.mass, state_.v);
-  const Eigen::VectorXd internal = problem.x_of(b, problem.internal_gradient(at, rest));
+  const Eigen::VectorXd internal = problem.internal_gradient(b, at, rest);
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
   record.kinetic = 0;
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) {

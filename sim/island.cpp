@@ -24,7 +24,7 @@ constexpr double kTimeLimit = 100;    // of the median of the last steps: a step
 constexpr double kLeastTimeLimit = 10;  // s
 constexpr double kCrossing =
     1e-3;  // of their distance before: features of thin bodies that get so near would cross
-constexpr std::size_t kNamedBodies = 4;  // in a message
+constexpr std::size_t kNamedBodies = 4;    // in a message
 constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
 Eigen::VectorXd joined(const std::vector<Eigen::VectorXd>& parts) {
@@ -117,19 +117,25 @@ std::string Island::names() const {
   return text;
 }
 
+// The pattern, and with it the order of elimination, depends on the contacts of now alone, so that a run that goes on
+// from a saved frame rounds alike.
 void Island::bind(PairContacts& contacts) {
-  const bool fits = workspace_ && contacts.bind(*pattern_);
+  std::set<std::vector<int>> couplings = contacts.couplings();
+  const bool fits = workspace_ && couplings == couplings_;
   if (!fits) {
-    const int vertices = first_vertex_.back() + static_cast<int>(members_.back().body->model().mass.size());
     workspace_.reset();
+    couplings_ = std::move(couplings);
+    const int vertices = first_vertex_.back() + static_cast<int>(members_.back().body->model().mass.size());
     pattern_ = std::make_unique<SymmetricPattern>(vertices, members_[0].body->model().dimension());
     for (std::size_t m = 0; m < members_.size(); ++m)
       members_[m].body->model().reserve(*pattern_, first_vertex_[m]);
-    contacts.reserve(*pattern_);
+    for (const std::vector<int>& coupled : couplings_)
+      pattern_->couple(coupled.data(), static_cast<int>(coupled.size()));
     pattern_->finish();
-    contacts.bind(*pattern_);
     workspace_ = std::make_unique<StepWorkspace>(*pattern_);
+    workspace_->deadline = deadline_;
   }
+  contacts.bind(*pattern_);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     BodyModel& model = members_[m].body->model();
     if (!fits || model.bound_to != pattern_.get()) model.bind(*pattern_, first_vertex_[m]);
@@ -192,6 +198,12 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
   }
   bind(contacts);
   return contacts;
+}
+
+double Island::heaviest() const {
+  double weight = 0;
+  for (const Member& member : members_) weight = std::max(weight, member.body->model().weight);
+  return weight;
 }
 
 std::vector<BodyPairs> Island::near_places(const Eigen::VectorXd& x, double h) const {
@@ -312,6 +324,16 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   std::vector<Goals> own_goals(count);
   std::vector<double> reaches(count);
   std::vector<ContactSet> contacts(count);
+  const auto touch_colliders = [&](std::size_t m, const Eigen::VectorXd& x, bool settled) {
+    const BodyModel& model = members_[m].body->model();
+    // A light body may have to bear the heaviest of the island.
+    ContactParameters parameters = model.contact;
+    const double load = heaviest() / model.weight;
+    parameters.normal_stiffness *= load;
+    parameters.friction_stiffness *= load;
+    contacts[m] = ContactSet(model.contact_points, parameters, colliders, x, reaches[m],
+                             members_[m].body->state().contacts, end - h, end, settled);
+  };
   for (std::size_t m = 0; m < count; ++m) {
     const BodyModel& model = members_[m].body->model();
     const Body::State& state = members_[m].body->state();
@@ -328,8 +350,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
       steps[m].q = same ? before[m].q : Eigen::VectorXd((1 - share) * before[m].q + share * *wishes[m].q);
     }
     reaches[m] = model.contact.layer + kReach * members_[m].body->travel(h) + kNear * model.height;
-    contacts[m] = ContactSet(model.contact_points, model.contact, colliders, state.x, reaches[m],
-                             state.contacts, end - h, end);
+    touch_colliders(m, state.x, false);
   }
   const Goals goals = joined(own_goals, x_n);
   const Eigen::VectorXd x_start = joined(x_n), start = joined(starts);
@@ -355,12 +376,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     }
     if (hold) break;
     if (may_touch) pairs = pair_contacts(places, memory, &pairs);
-    for (std::size_t m = 0; m < count; ++m) {
-      const BodyModel& model = members_[m].body->model();
-      contacts[m] =
-          ContactSet(model.contact_points, model.contact, colliders, problem->x_of(m, solution.at.x),
-                     reaches[m], members_[m].body->state().contacts, end - h, end, true);
-    }
+    for (std::size_t m = 0; m < count; ++m) touch_colliders(m, problem->x_of(m, solution.at.x), true);
   }
   for (StepRecord& record : records) {
     record.method = shared.method;
@@ -371,7 +387,8 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     record.residual_rel = std::max(record.residual_rel, solution.residual);
   }
   // What has no inside cannot be pushed back out: it must not be passed through on the way.
-  if (solution.exact && may_touch && passes_through(x_start, solution.at.x)) solution.exact = false;
+  crossed_ = solution.exact && may_touch && passes_through(x_start, solution.at.x);
+  if (crossed_) solution.exact = false;
   if (!solution.exact) {
     for (std::size_t m = 0; m < count; ++m) members_[m].body->note_failure(problem->x_of(m, solution.at.x));
     return false;
@@ -412,8 +429,9 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
     before.push_back(member.body->state());
   }
 
-  if (workspace_) workspace_->deadline = step_deadline();
-  const auto expired = [&] { return workspace_ && workspace_->expired(); };
+  deadline_ = step_deadline();
+  if (workspace_) workspace_->deadline = deadline_;
+  const auto expired = [&] { return processor_seconds() > deadline_; };
   std::vector<StepRecord> records;
   bool solved = false;
   for (int splits = 0; splits <= kMaxStepSplits && !solved && !expired(); ++splits) {
@@ -460,6 +478,12 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
       const std::string element = member.body->squeezed_element();
       if (!element.empty())
         squeezed += element + (members_.size() > 1 ? " of '" + member.body->model().name + "'" : "");
+    }
+    if (crossed_) {
+      throw Error(ErrorKind::numerical,
+                  where + ": thin bodies would pass through one another, in steps down to a " +
+                      std::to_string(1 << kMaxStepSplits) + "th",
+                  "raise frames.steps_per_frame, ask for slower motion, or make the thin bodies thicker");
     }
     throw Error(ErrorKind::numerical,
                 where + ": the equations of motion were not solved (residual " +

@@ -2,8 +2,10 @@
 // alone is an island too).
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -58,15 +60,19 @@ class Island {
   bool passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
   std::size_t member(int index) const;  // place in the list of the member with this number
   const BodyModel& model_of(int index) const { return members_[member(index)].body->model(); }
+  double heaviest() const;  // weight, N
   std::string names() const;
   double step_deadline() const;  // s of processor_seconds()
   void note_step_time(double seconds);
 
   WorldSettings settings_;
   std::vector<Member> members_;
-  std::vector<int> first_vertex_;              // of each member
-  std::unique_ptr<SymmetricPattern> pattern_;  // of several members; one alone has its own
+  std::vector<int> first_vertex_;  // of each member
+  std::unique_ptr<SymmetricPattern> pattern_;
+  std::set<std::vector<int>> couplings_;  // vertices of the contacts in the pattern
   std::unique_ptr<StepWorkspace> workspace_;
+  double deadline_ = INFINITY;        // of the step, s of processor_seconds()
+  bool crossed_ = false;              // the last part of a step failed because thin bodies would cross
   std::vector<double> step_seconds_;  // processor time of the last steps, for the time limit
 };
 

@@ -66,7 +66,7 @@ RowMatrixXd bent_pose(const SimMesh& mesh, double curvature) {
   return V;
 }
 
-BodyModel sample_body(const Sample& sample, const std::string& rest_space) {
+BodyInput sample_input(const Sample& sample, const std::string& rest_space) {
   BodyInput input = body_input(sample.mesh, sample.yaml, rest_space);
   const RowMatrixXd& V = sample.mesh.V;
   if (rest_space == "examples" || rest_space == "strains") {
@@ -85,7 +85,11 @@ BodyModel sample_body(const Sample& sample, const std::string& rest_space) {
       }
     }
   }
-  return make_body_model(input, {});
+  return input;
+}
+
+BodyModel sample_body(const Sample& sample, const std::string& rest_space) {
+  return make_body_model(sample_input(sample, rest_space), {});
 }
 
 Vector random_vector(Eigen::Index size, double reach, CounterRng& rng) {
@@ -215,7 +219,7 @@ void Motion::step(const Vector& q) {
   const ForwardResult end =
       forward_step(problem, rest, x_ + h_ * v_, std::max(kFinishTolerance, rounding), workspace_);
   if (!end.converged) throw Error(ErrorKind::numerical, "a step of the motion was not solved");
-  forces_ = -problem.internal_gradient(end.at, rest);
+  forces_ = -problem.internal_gradient(0, end.at, rest);
   v_ = (end.at.x - x_) / h_;
   x_ = end.at.x;
 }

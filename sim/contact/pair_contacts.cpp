@@ -60,15 +60,19 @@ Eigen::Vector3d Stencil::position(const Eigen::VectorXd& x, int dimension) const
   return y;
 }
 
-void PairContacts::reserve(SymmetricPattern& pattern) const {
+std::set<std::vector<int>> PairContacts::couplings() const {
+  std::set<std::vector<int>> all;
   for (const PairContact& contact : contacts_) {
     for (const Stencil* stencil : {&contact.gap, &contact.slip}) {
-      pattern.couple(stencil->vertices.data(), static_cast<int>(stencil->vertices.size()));
+      std::vector<int> vertices = stencil->vertices;
+      std::sort(vertices.begin(), vertices.end());
+      all.insert(std::move(vertices));
     }
   }
+  return all;
 }
 
-bool PairContacts::bind(const SymmetricPattern& pattern) {
+void PairContacts::bind(const SymmetricPattern& pattern) {
   slots_.clear();
   std::vector<double> turned;  // blocks of contacts are symmetric
   for (const PairContact& contact : contacts_) {
@@ -77,7 +81,6 @@ bool PairContacts::bind(const SymmetricPattern& pattern) {
                              turned);
     }
   }
-  return std::find(slots_.begin(), slots_.end(), -1) == slots_.end();
 }
 
 double PairContacts::distance(const PairContact& contact, const Eigen::VectorXd& x) const {

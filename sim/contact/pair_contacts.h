@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <compare>
+#include <set>
 #include <vector>
 
 #include "sim/contact/contact_surface.h"
@@ -71,10 +72,10 @@ class PairContacts {
   const std::vector<PairContact>& contacts() const { return contacts_; }
   bool empty() const { return contacts_.empty(); }
 
-  // Declares the entries that the Hessians write, and remembers where they lie.
-  void reserve(SymmetricPattern& pattern) const;
-  // Whether the pattern has them all; if so, remembers where they lie.
-  bool bind(const SymmetricPattern& pattern);
+  // The vertices that each stencil couples, ascending.
+  std::set<std::vector<int>> couplings() const;
+  // Remembers where the entries that the Hessians write lie in a pattern that has them.
+  void bind(const SymmetricPattern& pattern);
 
   double energy(const Eigen::VectorXd& x) const;
   void add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;

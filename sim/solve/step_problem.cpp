@@ -217,23 +217,18 @@ double StepProblem::potential(const DeformedPoint& at, const RestPoint& rest) co
   return sum;
 }
 
-Eigen::VectorXd StepProblem::internal_gradient(const DeformedPoint& at, const RestPoint& rest) const {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(at.x.size());
-  each_body([&](std::size_t b) {
-    Eigen::VectorXd part = Eigen::VectorXd::Zero(dofs(b));
-    for (std::size_t f = terms_at_[b]; f < terms_at_[b + 1]; ++f)
-      terms_[f].family->scatter(Side::deformed, at.g[f], stress(f, at, rest), part);
-    gradient.segment(x_at_[b], dofs(b)) = part;
-  });
+Eigen::VectorXd StepProblem::internal_gradient(std::size_t b, const DeformedPoint& at,
+                                               const RestPoint& rest) const {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(dofs(b));
+  for (std::size_t f = terms_at_[b]; f < terms_at_[b + 1]; ++f)
+    terms_[f].family->scatter(Side::deformed, at.g[f], stress(f, at, rest), gradient);
   return gradient;
 }
 
 Eigen::VectorXd StepProblem::residual(const DeformedPoint& at, const RestPoint& rest) const {
   Eigen::VectorXd c(at.x.size());
   each_body([&](std::size_t b) {
-    Eigen::VectorXd part = Eigen::VectorXd::Zero(dofs(b));
-    for (std::size_t f = terms_at_[b]; f < terms_at_[b + 1]; ++f)
-      terms_[f].family->scatter(Side::deformed, at.g[f], stress(f, at, rest), part);
+    Eigen::VectorXd part = internal_gradient(b, at, rest);
     const auto segment = [&](const Eigen::VectorXd& v) { return v.segment(x_at_[b], dofs(b)); };
     part += segment(inertia_).cwiseProduct(at.of(b) - segment(x_tilde_));
     bodies_[b].contacts->add_gradient(at.of(b), part);

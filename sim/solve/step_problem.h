@@ -82,8 +82,8 @@ class StepProblem {
   double potential(const DeformedPoint& at, const RestPoint& rest) const;
   // c, N.
   Eigen::VectorXd residual(const DeformedPoint& at, const RestPoint& rest) const;
-  // Minus the internal forces, elastic and damping, N.
-  Eigen::VectorXd internal_gradient(const DeformedPoint& at, const RestPoint& rest) const;
+  // Minus the internal forces of a body, elastic and damping, N.
+  Eigen::VectorXd internal_gradient(std::size_t body, const DeformedPoint& at, const RestPoint& rest) const;
   // W of a body, J.
   double elastic_energy(std::size_t body, const DeformedPoint& at, const RestPoint& rest) const;
   // D = ∂c/∂x.

@@ -117,8 +117,8 @@ TEST_P(StepConformance, InternalForcesKeepMomentum) {
   RandomStep still(GetParam(), {.model = ""}, 5, kFriction, 0.01),
       damped(GetParam(), {.model = kDamped}, 5, kFriction, 0.01);
   const Blocks f(damped, *damped.problem);
-  const Vector g = f.problem.internal_gradient(f.at(damped.x), f.rest(damped.q));
-  const Vector undamped = still.problem->internal_gradient(still.problem->deformed_point(damped.x),
+  const Vector g = f.problem.internal_gradient(0, f.at(damped.x), f.rest(damped.q));
+  const Vector undamped = still.problem->internal_gradient(0, still.problem->deformed_point(damped.x),
                                                            still.problem->rest_point(damped.q, false));
   EXPECT_GT((g - undamped).norm(), 1e-3 * g.norm()) << "damping acts";
   const int d = damped.body.dimension();
