@@ -326,11 +326,11 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   std::vector<ContactSet> contacts(count);
   const auto touch_colliders = [&](std::size_t m, const Eigen::VectorXd& x, bool settled) {
     const BodyModel& model = members_[m].body->model();
-    // A light body may have to bear the heaviest of the island.
     ContactParameters parameters = model.contact;
-    const double load = heaviest() / model.weight;
-    parameters.normal_stiffness *= load;
-    parameters.friction_stiffness *= load;
+    if (count > 1) {  // one point of a light body may have to bear the heaviest of the island
+      parameters.normal_stiffness = heaviest() / (parameters.layer * parameters.layer);
+      parameters.friction_stiffness = 2 * heaviest() / parameters.layer;
+    }
     contacts[m] = ContactSet(model.contact_points, parameters, colliders, x, reaches[m],
                              members_[m].body->state().contacts, end - h, end, settled);
   };
