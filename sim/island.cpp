@@ -158,8 +158,8 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
   for (const BodyPairs& between : pairs) {
     const std::size_t ma = member(between.a), mb = member(between.b);
     const BodyModel &a = members_[ma].body->model(), &b = members_[mb].body->model();
-    // One place may have to bear the heavier body.
-    const double layer = std::max(a.contact.layer, b.contact.layer), load = std::max(a.weight, b.weight);
+    // One place may have to bear the heaviest body.
+    const double layer = std::max(a.contact.layer, b.contact.layer), load = heaviest();
     const double friction_stiffness = 2 * load / layer;
     for (const SurfacePair& pair : between.pairs) {
       const PairIdentity identity{between.a, between.b, pair.kind, pair.feature_a, pair.feature_b};
