@@ -19,7 +19,7 @@ using namespace vivify::bench;
 namespace {
 
 constexpr double kStep = 0.01;
-constexpr int kRepetitions = 5;
+constexpr int kRepetitions = 5, kSpheres = 50;
 
 // Wall time per step of the next `steps` steps, s.
 double step_seconds(sim::World& world, int steps) {
@@ -54,34 +54,29 @@ int main() {
     std::printf("hopper with 160 contact points over one with 16: %.2f\n", median(ratios));
   }
 
-  const auto pile_seconds = [](int threads, int settle, int steps) {
-    set_thread_count(threads);
-    sim::World world = pile_world({.spheres = 50}, kStep);
-    step_seconds(world, settle);
-    return step_seconds(world, steps);
+  // The same motions (to the bit) with one thread and with two, step by step in turn.
+  struct Run {
+    sim::World world;
+    int threads;
+    double seconds = 0;
   };
-  const auto apart_seconds = [](int threads, int count, int settle, int steps) {
-    set_thread_count(threads);
-    sim::World world = apart_world(count, kStep);
-    step_seconds(world, settle);
-    return step_seconds(world, steps);
-  };
-  std::printf("%-12s %12s %12s %18s %22s\n", "50 spheres", "pile ms", "apart ms", "pile / apart",
-              "2 threads: pile, apart");
-  for (const auto& [name, settle] :
-       {std::pair("falling", 20), std::pair("landing", 60), std::pair("at rest", 200)}) {
-    std::vector<double> pile, apart, cost, pile_gain, apart_gain;
-    for (int i = 0; i < 3; ++i) {
-      const double p1 = pile_seconds(1, settle, 20), a1 = apart_seconds(1, 50, settle, 20);
-      const double p2 = pile_seconds(2, settle, 20), a2 = apart_seconds(2, 50, settle, 20);
-      pile.push_back(1e3 * p1);
-      apart.push_back(1e3 * a1);
-      cost.push_back(p1 / a1);
-      pile_gain.push_back(p1 / p2);
-      apart_gain.push_back(a1 / a2);
+  Run runs[] = {{pile_world({.spheres = kSpheres}, kStep), 1},
+                {pile_world({.spheres = kSpheres}, kStep), 2},
+                {apart_world(kSpheres, kStep), 1},
+                {apart_world(kSpheres, kStep), 2}};
+  std::printf("%d spheres: pile over apart (one thread), two threads over one: pile, apart\n", kSpheres);
+  for (const auto& [name, end] :
+       {std::pair("falling", 25), std::pair("landing", 90), std::pair("coming to rest", 180)}) {
+    for (Run& run : runs) run.seconds = 0;
+    for (long step = runs[0].world.steps(); step < end; ++step) {
+      for (Run& run : runs) {
+        set_thread_count(run.threads);
+        run.seconds += step_seconds(run.world, 1);
+      }
     }
-    std::printf("%-12s %12.2f %12.2f %18.2f %14.2f %7.2f\n", name, median(pile), median(apart), median(cost),
-                median(pile_gain), median(apart_gain));
+    std::printf("  until step %3d, %-15s %6.2f %8.2f %6.2f\n", end, name, runs[0].seconds / runs[2].seconds,
+                runs[0].seconds / runs[1].seconds, runs[2].seconds / runs[3].seconds);
+    std::fflush(stdout);
   }
   return 0;
 }

@@ -9,7 +9,7 @@ namespace {
 class BigPile : public ::testing::TestWithParam<double> {};
 
 TEST_P(BigPile, Settles) {
-  const PileResult result = settle_pile({.spheres = 50, .cards = 10, .speed = GetParam()}, 4);
+  const PileResult result = settle_pile({.spheres = 50, .cards = 10, .speed = GetParam()}, 3);
   EXPECT_LE(result.residual, 1e-8);
   EXPECT_EQ(result.escaped, 0);
   EXPECT_LE(result.deepest_at_rest, 0.01 * bench::kPileRadius);
