@@ -19,6 +19,8 @@ constexpr std::array kProblems = {
     ProblemEntry{"buckling", buckling},
     ProblemEntry{"inversion", inversion},
     ProblemEntry{"interpolation", interpolation},
+    ProblemEntry{"stopping", stopping},
+    ProblemEntry{"arch", arch},
 };
 
 }  // namespace

@@ -85,6 +85,8 @@ Result large_deflection(Effort effort);
 Result buckling(Effort effort);
 Result inversion(Effort effort);
 Result interpolation(Effort effort);
+Result stopping(Effort effort);
+Result arch(Effort effort);
 
 // A number with four significant digits.
 std::string short_number(double value);
