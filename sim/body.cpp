@@ -205,10 +205,10 @@ bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
   return true;
 }
 
-Body::Wish Body::wish(long step, double load) {
+Body::Wish Body::wish(long step, double load, const std::optional<Eigen::Vector3d>& ground) {
   for (const ContactMemory& memory : state_.contacts) load += memory.normal_force;
   Wish wish;
-  wish.goals = controller_->goals({state_.x, state_.v, load});
+  wish.goals = controller_->goals({state_.x, state_.v, load, ground});
   if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
     wish.q = model_.rest->basis().transpose() * *p;
   } else if (controller_->passive()) {

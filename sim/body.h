@@ -67,12 +67,12 @@ class Body {
   void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
 
   // What the body wants in a step; `step` counts from 1. Advances the controller's clock. `load`: sum of the
-  // normal forces from other bodies in the last step, N.
+  // normal forces from other bodies in the last step, N. `ground`: velocity of the colliders that it touches.
   struct Wish {
     std::vector<Goal> goals;
     std::optional<Eigen::VectorXd> q;  // rest parameters that are given instead of sought
   };
-  Wish wish(long step, double load);
+  Wish wish(long step, double load, const std::optional<Eigen::Vector3d>& ground);
 
   // Moves the surface that touches other bodies to x.
   void move_surface(const Eigen::VectorXd& x) { surface_->move_to(x); }

@@ -24,7 +24,7 @@ constexpr double kTimeLimit = 100;    // of the median of the last steps: a step
 constexpr double kLeastTimeLimit = 10;  // s
 constexpr double kCrossing =
     1e-3;  // of their distance before: features of thin bodies that get so near would cross
-constexpr std::size_t kNamedBodies = 4;    // in a message
+constexpr std::size_t kNamedBodies = 4;  // in a message
 constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
 Eigen::VectorXd joined(const std::vector<Eigen::VectorXd>& parts) {
@@ -117,8 +117,8 @@ std::string Island::names() const {
   return text;
 }
 
-// The pattern, and with it the order of elimination, depends on the contacts of now alone, so that a run that goes on
-// from a saved frame rounds alike.
+// The pattern, and with it the order of elimination, depends on the contacts of now alone, so that a run that
+// goes on from a saved frame rounds alike.
 void Island::bind(PairContacts& contacts) {
   std::set<std::vector<int>> couplings = contacts.couplings();
   const bool fits = workspace_ && couplings == couplings_;
@@ -425,7 +425,9 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
       if (touching.identity.body_a == member.index || touching.identity.body_b == member.index)
         load += touching.normal_force;
     }
-    wishes.push_back(member.body->wish(step, load));
+    const double end = static_cast<double>(step) * settings_.h;
+    wishes.push_back(member.body->wish(
+        step, load, ground_velocity(member.body->state().contacts, colliders, end - settings_.h, end)));
     before.push_back(member.body->state());
   }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "common/mesh.h"
@@ -111,5 +112,11 @@ class ContactSet {
   NormalForce normal_ = {0, 0};
   std::vector<Contact> contacts_;
 };
+
+// Mean velocity, weighted by normal force, of what was touched at the end of the last step, in a step from
+// `begin` to `end` (s), m/s.
+std::optional<Eigen::Vector3d> ground_velocity(const std::vector<ContactMemory>& memory,
+                                               const std::vector<Collider>& colliders, double begin,
+                                               double end);
 
 }  // namespace vivify::sim

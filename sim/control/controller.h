@@ -30,6 +30,8 @@ struct Observation {
   const Eigen::VectorXd& x;  // d #V, m
   const Eigen::VectorXd& v;  // d #V, m/s
   double load;               // sum of the normal forces of the last step, N
+  // Velocity in the coming step of the colliders that it touches, m/s; nothing where it touches none.
+  std::optional<Eigen::Vector3d> ground = {};
 };
 
 class Controller {

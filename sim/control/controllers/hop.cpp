@@ -57,8 +57,10 @@ class HopController final : public Controller {
 
   std::vector<Goal> goals(const Observation& now) override {
     const bool standing = now.load > kTouchLoad * body_.mass.sum() * body_.gravity;
+    if (now.ground) ground_ = *now.ground;
     advance_phase(standing, now);
     time_ += body_.h;
+    carried_ += body_.h * ground_;
 
     std::vector<Goal> goals;
     if (!standing && phase_ != kThrust)
@@ -98,8 +100,8 @@ class HopController final : public Controller {
   std::string phase() const override { return kPhaseNames[phase_]; }
 
   Eigen::VectorXd state() const override {
-    Eigen::VectorXd state(10);
-    state << phase_, time_, start_, start_rate_, ground_height_, learnt_;
+    Eigen::VectorXd state(16);
+    state << phase_, time_, start_, start_rate_, ground_height_, learnt_, ground_, carried_;
     return state;
   }
 
@@ -110,13 +112,16 @@ class HopController final : public Controller {
     start_rate_ = state[5];
     ground_height_ = state[6];
     learnt_ = state.segment<3>(7);
+    ground_ = state.segment<3>(10);
+    carried_ = state.segment<3>(13);
   }
 
  private:
   static Eigen::Vector3d up() { return Eigen::Vector3d::UnitY(); }
   Eigen::Vector3d sideways() const { return up().cross(forward_); }
 
-  // Velocity of the centre of mass at take-off: the asked height and pace, and back to the line of travel.
+  // Velocity of the centre of mass over the ground at take-off: the asked height and pace, and back to the
+  // line of travel.
   Eigen::Vector3d wanted_take_off() const {
     const double flight = 2 * take_off_ / body_.gravity;
     const double offset = sideways().dot(start_ - rest_centre_);
@@ -128,7 +133,7 @@ class HopController final : public Controller {
   // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
   // take-off fell short.
   void learn(const Observation& now) {
-    const Eigen::Vector3d missed = wanted_take_off() - centre_of_mass(body_.mass, now.v);
+    const Eigen::Vector3d missed = wanted_take_off() + ground_ - centre_of_mass(body_.mass, now.v);
     learnt_ += kLearning * missed;
     const double largest = kLargestLearnt * wanted_take_off().norm();
     if (learnt_.norm() > largest) learnt_ *= largest / learnt_.norm();
@@ -157,11 +162,11 @@ class HopController final : public Controller {
   void enter(Phase phase, const Observation& now) {
     phase_ = phase;
     time_ = 0;
-    start_ = centre_of_mass(body_.mass, now.x);
-    start_rate_ = centre_of_mass(body_.mass, now.v).y();
+    start_ = centre_of_mass(body_.mass, now.x) - carried_;
+    start_rate_ = centre_of_mass(body_.mass, now.v).y() - ground_.y();
     // The ground may be anywhere: the centre stands above the lowest vertex as it does at rest.
     if (phase == kCrouch || phase == kLand)
-      ground_height_ = lowest_height(now.x, body_.dimension()) + rest_rise_;
+      ground_height_ = lowest_height(now.x, body_.dimension()) + rest_rise_ - carried_.y();
   }
 
   void advance_phase(bool standing, const Observation& now) {
@@ -186,10 +191,11 @@ class HopController final : public Controller {
     }
   }
 
+  // sx and sv are of a frame that goes along with the ground.
   void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency,
                   double sx, double sv) const {
-    goals.push_back(
-        {centre_of_mass_weights(body_.mass, direction, body_.dimension()), frequency * kd, kd, sx, sv});
+    goals.push_back({centre_of_mass_weights(body_.mass, direction, body_.dimension()), frequency * kd, kd,
+                     sx + direction.dot(carried_), sv + direction.dot(ground_)});
   }
 
   // Turns the body upright, and its face towards the heading when asked.
@@ -221,9 +227,12 @@ class HopController final : public Controller {
   Phase phase_ = kLand;  // a body may start in the air; one that stands crouches at once
   double time_ = 0;      // since the phase began, s
   Eigen::Vector3d start_ = Eigen::Vector3d::Zero();   // centre of mass when the phase began, m
-  double start_rate_ = 0;                             // its vertical velocity then, m/s
+  double start_rate_ = 0;                             // its vertical velocity then, over the ground, m/s
   Eigen::Vector3d learnt_ = Eigen::Vector3d::Zero();  // added to the take-off velocity, m/s
   double ground_height_ = 0;                          // of the centre of mass when standing, m
+  // Velocity of the ground when it was touched last (m/s), and how far it would have gone with it (m). Places
+  // are kept without the latter.
+  Eigen::Vector3d ground_ = Eigen::Vector3d::Zero(), carried_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace
