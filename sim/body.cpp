@@ -251,11 +251,11 @@ void Body::finish_record(long step, const std::vector<Collider>& colliders, Step
       static_cast<int>(std::count_if(state_.contacts.begin(), state_.contacts.end(),
                                      [](const ContactMemory& memory) { return memory.touching; }));
   record.min_clearance = INFINITY;
-  for (int i = 0; i < model_.contact_points.size(); ++i) {
-    const Eigen::Vector3d y = model_.contact_points.position(i, state_.x);
-    for (const Collider& collider : colliders) {
-      const Eigen::Vector3d own = collider.moves() ? collider.pose(record.t).inverse() * y : y;
-      record.min_clearance = std::min(record.min_clearance, collider.nearest(own).distance);
+  for (const Collider& collider : colliders) {
+    const Eigen::Isometry3d pose = collider.pose(record.t);
+    for (int i = 0; i < model_.contact_points.size(); ++i) {
+      const Eigen::Vector3d y = model_.contact_points.position(i, state_.x);
+      record.min_clearance = std::min(record.min_clearance, collider.nearest(y, pose).distance);
     }
   }
   record.max_penetration = std::max(record.max_penetration, -record.min_clearance);

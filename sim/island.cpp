@@ -105,7 +105,17 @@ Island::Island(std::vector<Member> members, const WorldSettings& settings)
   for (const Member& member : members_) {
     first_vertex_.push_back(vertices);
     vertices += static_cast<int>(member.body->model().mass.size());
+    heaviest_ = std::max(heaviest_, member.body->model().weight);
   }
+}
+
+Eigen::VectorXd Island::part(const Eigen::VectorXd& x, std::size_t m) const {
+  const BodyModel& model = members_[m].body->model();
+  return x.segment(model.dimension() * first_vertex_[m], model.dofs());
+}
+
+void Island::move_surfaces(const Eigen::VectorXd& x) const {
+  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].body->move_surface(part(x, m));
 }
 
 std::string Island::names() const {
@@ -159,7 +169,7 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
     const std::size_t ma = member(between.a), mb = member(between.b);
     const BodyModel &a = members_[ma].body->model(), &b = members_[mb].body->model();
     // One place may have to bear the heaviest body.
-    const double layer = std::max(a.contact.layer, b.contact.layer), load = heaviest();
+    const double layer = std::max(a.contact.layer, b.contact.layer), load = heaviest_;
     const double friction_stiffness = 2 * load / layer;
     for (const SurfacePair& pair : between.pairs) {
       const PairIdentity identity{between.a, between.b, pair.kind, pair.feature_a, pair.feature_b};
@@ -200,18 +210,9 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
   return contacts;
 }
 
-double Island::heaviest() const {
-  double weight = 0;
-  for (const Member& member : members_) weight = std::max(weight, member.body->model().weight);
-  return weight;
-}
-
 std::vector<BodyPairs> Island::near_places(const Eigen::VectorXd& x, double h) const {
   std::vector<BodyPairs> pairs;
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    const BodyModel& model = members_[m].body->model();
-    members_[m].body->move_surface(x.segment(model.dimension() * first_vertex_[m], model.dofs()));
-  }
+  move_surfaces(x);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     for (std::size_t n = members_[m].body->model().contact.self ? m : m + 1; n < members_.size(); ++n) {
       BodyPairs near = sim::near_places(members_[m], members_[n], h);
@@ -245,15 +246,11 @@ bool Island::pairs_hold(const std::vector<BodyPairs>& pairs, const PairContacts&
 }
 
 bool Island::passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-  const auto part = [&](const Eigen::VectorXd& x, std::size_t m) -> Eigen::VectorXd {
-    const BodyModel& model = members_[m].body->model();
-    return x.segment(model.dimension() * first_vertex_[m], model.dofs());
-  };
   const auto thin = [&](std::size_t m) { return members_[m].body->model().surface.two_sided; };
   if (std::none_of(members_.begin(), members_.end(),
                    [](const Member& member) { return member.body->model().surface.two_sided; }))
     return false;
-  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].body->move_surface(part(from, m));
+  move_surfaces(from);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const SurfaceState& of_m = members_[m].body->surface();
     const Eigen::VectorXd moved = part(to - from, m);
@@ -328,8 +325,8 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     const BodyModel& model = members_[m].body->model();
     ContactParameters parameters = model.contact;
     if (count > 1) {  // one point of a light body may have to bear the heaviest of the island
-      parameters.normal_stiffness = heaviest() / (parameters.layer * parameters.layer);
-      parameters.friction_stiffness = 2 * heaviest() / parameters.layer;
+      parameters.normal_stiffness = heaviest_ / (parameters.layer * parameters.layer);
+      parameters.friction_stiffness = 2 * heaviest_ / parameters.layer;
     }
     contacts[m] = ContactSet(model.contact_points, parameters, colliders, x, reaches[m],
                              members_[m].body->state().contacts, end - h, end, settled);

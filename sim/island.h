@@ -60,7 +60,8 @@ class Island {
   bool passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
   std::size_t member(int index) const;  // place in the list of the member with this number
   const BodyModel& model_of(int index) const { return members_[member(index)].body->model(); }
-  double heaviest() const;  // weight, N
+  Eigen::VectorXd part(const Eigen::VectorXd& x, std::size_t m) const;  // of member m, of the x of all
+  void move_surfaces(const Eigen::VectorXd& x) const;
   std::string names() const;
   double step_deadline() const;  // s of processor_seconds()
   void note_step_time(double seconds);
@@ -68,6 +69,7 @@ class Island {
   WorldSettings settings_;
   std::vector<Member> members_;
   std::vector<int> first_vertex_;  // of each member
+  double heaviest_ = 0;            // weight of a member, N
   std::unique_ptr<SymmetricPattern> pattern_;
   std::set<std::vector<int>> couplings_;  // vertices of the contacts in the pattern
   std::unique_ptr<StepWorkspace> workspace_;

@@ -62,6 +62,7 @@ void World::require_apart() {
 
 // Where bodies are near one another, in the order of the bodies.
 std::vector<BodyPairs> World::near_bodies() {
+  if (bodies_.size() == 1 && !bodies_[0]->model().contact.self) return {};
   std::vector<BoundingBox> boxes(bodies_.size());
   parallel_for(bodies_.size(), [&](std::size_t b) {
     Body& body = *bodies_[b];

@@ -6,8 +6,10 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "teacup"))
+ASSETS = pathlib.Path(__file__).parent.parent
+sys.path[:0] = [str(ASSETS), str(ASSETS / "teacup")]
 import files
+import lattice
 
 RADIUS = 0.3  # m
 CELLS = 20  # along each side of a patch
@@ -16,30 +18,10 @@ COLORS = {"x": (0.62, 0.10, 0.06), "y": (0.75, 0.68, 0.55), "z": (0.80, 0.45, 0.
 
 def ball():
     """Vertices (#V by 3) and, for each part, triangles (counter-clockwise outward): a cube's surface in equal angles."""
-    index, points, triangles = {}, [], {name: [] for name in COLORS}
-
-    def vertex(node):
-        if node not in index:
-            index[node] = len(points)
-            way = np.tan(np.pi / 4 * (2 * np.array(node) / CELLS - 1))
-            points.append(RADIUS * (way / np.linalg.norm(way) + (0, 1, 0)))
-        return index[node]
-
-    for axis, name in enumerate(COLORS):
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        for side in (0, CELLS):
-            for i in range(CELLS):
-                for j in range(CELLS):
-                    corners = []
-                    for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                        node = [0, 0, 0]
-                        node[axis], node[u], node[v] = side, i + di, j + dj
-                        corners.append(vertex(tuple(node)))
-                    if side == 0:
-                        corners.reverse()
-                    a, b, c, d = corners
-                    triangles[name] += [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
-    return np.array(points), {name: np.array(of_part) for name, of_part in triangles.items()}
+    nodes, sides = lattice.boundary((CELLS, CELLS, CELLS))
+    ways = np.tan(np.pi / 4 * (2 * nodes / CELLS - 1))
+    points = RADIUS * (ways / np.linalg.norm(ways, axis=1, keepdims=True) + (0, 1, 0))
+    return points, dict(zip(COLORS, sides))
 
 
 def main():

@@ -6,35 +6,17 @@ import sys
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+import lattice
+
 SIZE = np.array([0.1875, 1.0, 0.1875])  # m; multiples of the cells are exact in binary
 CELLS = (6, 32, 6)
 
 
 def box():
     """Vertices (#V by 3) and triangles (#F by 3, counter-clockwise outward) of the boundary of the lattice."""
-    index, points, triangles = {}, [], []
-
-    def vertex(node):
-        if node not in index:
-            index[node] = len(points)
-            points.append((np.array(node) / CELLS - (0.5, 0.0, 0.5)) * SIZE)
-        return index[node]
-
-    for axis in range(3):
-        u, v = (axis + 1) % 3, (axis + 2) % 3
-        for side in (0, CELLS[axis]):
-            for i in range(CELLS[u]):
-                for j in range(CELLS[v]):
-                    corners = []
-                    for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)):
-                        node = [0, 0, 0]
-                        node[axis], node[u], node[v] = side, i + di, j + dj
-                        corners.append(vertex(tuple(node)))
-                    if side == 0:
-                        corners.reverse()
-                    a, b, c, d = corners
-                    triangles += [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
-    return np.array(points), np.array(triangles)
+    nodes, sides = lattice.boundary(CELLS)
+    return (nodes / CELLS - (0.5, 0.0, 0.5)) * SIZE, np.concatenate(sides)
 
 
 def ply(points, triangles):

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/validation/lattice.h"
 #include "bench/validation/problem.h"
 #include "bench/validation/standing.h"
 
@@ -14,26 +15,12 @@ constexpr double kSeconds = 6;
 
 // Voussoir `index` of `count` of a half circle on y = 0, of 2 by 2 cells.
 SimMesh voussoir(int index, int count) {
-  SimMesh mesh{RowMatrixXd(9, 2), RowMatrixXi(8, 3)};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double angle = std::numbers::pi * (1 - (index + 0.5 * i) / count),
-                   r = kInner + 0.5 * j * (kOuter - kInner);
-      mesh.V.row(i + 3 * j) << r * std::cos(angle), r * std::sin(angle);
-    }
-  }
-  int t = 0;
-  for (int j = 0; j < 2; ++j) {
-    for (int i = 0; i < 2; ++i) {
-      const int a = i + 3 * j, b = a + 1, c = a + 4, d = a + 3;
-      if ((i + j) % 2 == 0) {
-        mesh.E.row(t++) << a, b, c;
-        mesh.E.row(t++) << a, c, d;
-      } else {
-        mesh.E.row(t++) << a, b, d;
-        mesh.E.row(t++) << b, c, d;
-      }
-    }
+  SimMesh mesh = rectangle(2, 2, 1, 1);
+  for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+    const double along = mesh.V(v, 0), across = mesh.V(v, 1) + 0.5;  // each from 0 to 1
+    const double angle = std::numbers::pi * (1 - (index + along) / count),
+                 r = kInner + across * (kOuter - kInner);
+    mesh.V.row(v) << r * std::cos(angle), r * std::sin(angle);
   }
   return mesh;
 }

@@ -27,4 +27,12 @@ SurfacePoint Collider::nearest(const Eigen::Vector3d& point) const {
   return nearest;
 }
 
+SurfacePoint Collider::nearest(const Eigen::Vector3d& point, const Eigen::Isometry3d& pose) const {
+  if (!moves()) return nearest(point);
+  SurfacePoint place = nearest(pose.inverse() * point);
+  place.position = pose * place.position;
+  place.normal = pose.linear() * place.normal;
+  return place;
+}
+
 }  // namespace vivify::sim

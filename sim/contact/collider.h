@@ -29,6 +29,8 @@ class Collider {
   // The nearest surface point; `point` and answer are in the collider's own frame. Throws Error(numerical)
   // for a point at no finite distance.
   SurfacePoint nearest(const Eigen::Vector3d& point) const;
+  // The same in the world, while the collider stands at `pose`.
+  SurfacePoint nearest(const Eigen::Vector3d& point, const Eigen::Isometry3d& pose) const;
 
   // From the collider's own frame to the world at time t (s); the identity for one that does not move.
   Eigen::Isometry3d pose(double t) const { return motion_.pose(t); }

@@ -12,14 +12,7 @@ constexpr double kLeastPlanarNormal = 0.1;  // of a normal's part in the plane o
 // meet its section with the plane z = 0. Empty where the collider faces across the plane.
 std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen::Isometry3d& pose,
                                           const Eigen::Vector3d& y, int dimension) {
-  SurfacePoint nearest;
-  if (collider.moves()) {
-    nearest = collider.nearest(pose.inverse() * y);
-    nearest.position = pose * nearest.position;
-    nearest.normal = pose.linear() * nearest.normal;
-  } else {
-    nearest = collider.nearest(y);
-  }
+  SurfacePoint nearest = collider.nearest(y, pose);
   if (dimension == 3) return nearest;
   nearest.normal.z() = 0;
   const double length = nearest.normal.norm();
@@ -76,7 +69,7 @@ double ContactSet::energy(const Eigen::VectorXd& x) const {
   for (const Contact& contact : contacts_) {
     const Eigen::Vector3d y = points_->position(contact.point, x);
     sum += normal_.energy(contact.normal.dot(y - contact.origin));
-    sum += contact.friction.energy(tangential(contact, y - contact.anchor));
+    sum += contact.friction.energy(tangential(contact.normal, y - contact.anchor));
   }
   return sum;
 }
@@ -85,7 +78,7 @@ void ContactSet::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradien
   for (const Contact& contact : contacts_) {
     const Eigen::Vector3d y = points_->position(contact.point, x);
     const Eigen::Vector3d g = -normal_.force(contact.normal.dot(y - contact.origin)) * contact.normal +
-                              contact.friction.gradient(tangential(contact, y - contact.anchor));
+                              contact.friction.gradient(tangential(contact.normal, y - contact.anchor));
     const int d = points_->dimension;
     for (int k = 0; k < points_->corners(); ++k) {
       gradient.segment(d * points_->vertices(contact.point, k), d) +=
@@ -113,8 +106,9 @@ void ContactSet::add_hessian(const Eigen::VectorXd& x, const std::vector<int>& s
     const Eigen::Vector3d y = points_->position(contact.point, x);
     const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
     const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
-    const Eigen::Matrix3d block = normal_.second(contact.normal.dot(y - contact.origin)) * nn +
-                                  T * contact.friction.hessian(tangential(contact, y - contact.anchor)) * T;
+    const Eigen::Matrix3d block =
+        normal_.second(contact.normal.dot(y - contact.origin)) * nn +
+        T * contact.friction.hessian(tangential(contact.normal, y - contact.anchor)) * T;
     if (block.isZero(0)) continue;
     scatter(contact, block, slots, matrix);
   }
@@ -126,10 +120,10 @@ void ContactSet::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
     const Eigen::Vector3d y = points_->position(contact.point, x), w = points_->position(contact.point, l);
     const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
     const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
-    const Eigen::Vector3d u = tangential(contact, y - contact.anchor);
+    const Eigen::Vector3d u = tangential(contact.normal, y - contact.anchor);
     const Eigen::Matrix3d block =
         normal_.third(contact.normal.dot(y - contact.origin)) * contact.normal.dot(w) * nn +
-        T * contact.friction.third(u, tangential(contact, w)) * T;
+        T * contact.friction.third(u, tangential(contact.normal, w)) * T;
     scatter(contact, block, slots, matrix);
   }
 }
@@ -139,7 +133,7 @@ Eigen::Vector3d ContactSet::total_force(const Eigen::VectorXd& x) const {
   for (const Contact& contact : contacts_) {
     const Eigen::Vector3d y = points_->position(contact.point, x);
     sum += normal_.force(contact.normal.dot(y - contact.origin)) * contact.normal -
-           contact.friction.gradient(tangential(contact, y - contact.anchor));
+           contact.friction.gradient(tangential(contact.normal, y - contact.anchor));
   }
   return sum;
 }
@@ -149,10 +143,8 @@ bool ContactSet::planes_hold(const std::vector<Collider>& colliders, const Eigen
   for (const Contact& contact : contacts_) {
     const double assumed = distance(contact, x);
     if (assumed > normal_.layer + tolerance) continue;
-    const Collider& collider = colliders[contact.collider];
     const Eigen::Vector3d y = points_->position(contact.point, x);
-    const double actual =
-        collider.nearest(collider.moves() ? poses_[contact.collider].inverse() * y : y).distance;
+    const double actual = colliders[contact.collider].nearest(y, poses_[contact.collider]).distance;
     if (std::abs(actual - assumed) > tolerance) return false;
   }
   return true;
@@ -171,7 +163,7 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
     after.anchor = y;
     after.collider = contact.collider;
     if (memory[contact.point].touching && memory[contact.point].collider == contact.collider) {
-      after.anchor = y - contact.friction.return_map(tangential(contact, y - contact.anchor));
+      after.anchor = y - contact.friction.return_map(tangential(contact.normal, y - contact.anchor));
     }
     // Colliders that do not move stand at the identity.
     if (!poses_[contact.collider].matrix().isIdentity(0))

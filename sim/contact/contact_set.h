@@ -101,9 +101,6 @@ class ContactSet {
   void update_memory(const Eigen::VectorXd& x, std::vector<ContactMemory>& memory) const;
 
  private:
-  Eigen::Vector3d tangential(const Contact& contact, const Eigen::Vector3d& v) const {
-    return v - contact.normal * contact.normal.dot(v);
-  }
   void scatter(const Contact& contact, const Eigen::Matrix3d& block, const std::vector<int>& slots,
                SymmetricMatrix& matrix) const;
 

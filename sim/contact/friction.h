@@ -10,6 +10,11 @@
 
 namespace vivify::sim {
 
+// The part of v across the unit vector `normal`.
+inline Eigen::Vector3d tangential(const Eigen::Vector3d& normal, const Eigen::Vector3d& v) {
+  return v - normal * normal.dot(v);
+}
+
 class Friction {
  public:
   // `stiffness` k_t in N/m, `limit` μ f_n in N (may be infinite; zero means no friction).

@@ -6,10 +6,6 @@
 namespace vivify::sim {
 namespace {
 
-Eigen::Vector3d tangential(const Eigen::Vector3d& normal, const Eigen::Vector3d& v) {
-  return v - normal * normal.dot(v);
-}
-
 void add_forces(const Stencil& stencil, const Eigen::Vector3d& g, int dimension, Eigen::VectorXd& gradient) {
   for (std::size_t k = 0; k < stencil.vertices.size(); ++k) {
     gradient.segment(dimension * stencil.vertices[k], dimension) += stencil.weights[k] * g.head(dimension);

@@ -70,7 +70,6 @@ class PairContacts {
 
   void add(PairContact contact) { contacts_.push_back(std::move(contact)); }
   const std::vector<PairContact>& contacts() const { return contacts_; }
-  bool empty() const { return contacts_.empty(); }
 
   // The vertices that each stencil couples, ascending.
   std::set<std::vector<int>> couplings() const;
@@ -97,8 +96,7 @@ class PairContacts {
 
   int dimension_;
   std::vector<PairContact> contacts_;
-  std::vector<int>
-      slots_;  // of the blocks of the gap stencils, then of the slip stencils, contact by contact
+  std::vector<int> slots_;  // of the blocks of each contact: of its gap, then of its slip
 };
 
 }  // namespace vivify::sim

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "sim/contact/closest_points.h"
 #include "sim/contact/shapes/shapes.h"
 #include "sim/contact/surface_check.h"
 
@@ -20,40 +21,12 @@ namespace {
 
 using Box3 = Eigen::AlignedBox<double, 3>;
 
-// Which feature of a triangle a point is nearest to: 0 the face, 1–3 the corner, 4–6 the edge (corner k−4 to
-// k−3).
-struct TrianglePoint {
-  Eigen::Vector3d position;
-  int feature;
-};
-
-// Nearest point of a triangle by the regions of its barycentric coordinates (Ericson 2005, 5.1.5).
-TrianglePoint nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                  const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d ab = b - a, ac = c - a;
-  const double d1 = ab.dot(p - a), d2 = ac.dot(p - a);
-  if (d1 <= 0 && d2 <= 0) return {a, 1};
-  const double d3 = ab.dot(p - b), d4 = ac.dot(p - b);
-  if (d3 >= 0 && d4 <= d3) return {b, 2};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + ab * (d1 / (d1 - d3)), 4};
-  const double d5 = ab.dot(p - c), d6 = ac.dot(p - c);
-  if (d6 >= 0 && d5 <= d6) return {c, 3};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + ac * (d2 / (d2 - d6)), 6};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 5};
-  const double scale = 1 / (va + vb + vc);
-  return {a + ab * (vb * scale) + ac * (vc * scale), 0};
-}
-
 struct NearestQuery {
   using Scalar = double;
   const TriangleMesh& surface;
   const Eigen::Vector3d point;
   int best_face = -1;
-  TrianglePoint best = {};
+  TrianglePlace best = {};
   double best_distance2 = INFINITY;
 
   double minimumOnVolume(const Box3& box) const { return box.squaredExteriorDistance(point); }
@@ -61,7 +34,7 @@ struct NearestQuery {
     const auto corner = [&](int k) -> Eigen::Vector3d {
       return surface.V.row(surface.F(face, k)).transpose();
     };
-    const TrianglePoint candidate = nearest_on_triangle(point, corner(0), corner(1), corner(2));
+    const TrianglePlace candidate = nearest_on_triangle(point, corner(0), corner(1), corner(2));
     const double distance2 = (candidate.position - point).squaredNorm();
     if (distance2 < best_distance2 || (distance2 == best_distance2 && face < best_face)) {
       best_face = face;
@@ -113,10 +86,8 @@ class MeshShape final : public ColliderShape {
       faces.push_back(f);
       boxes.push_back(box);
       for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector3d to_next = (corner[(k + 1) % 3] - corner[k]).normalized();
-        const Eigen::Vector3d to_last = (corner[(k + 2) % 3] - corner[k]).normalized();
-        const double angle = std::acos(std::clamp(to_next.dot(to_last), -1.0, 1.0));
-        corner_normals_[F(f, k)] += angle * normal;
+        corner_normals_[F(f, k)] +=
+            corner_angle(corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]) * normal;
         const std::pair<int, int> edge = edge_of(F, f, k);
         const auto [it, inserted] = edge_normals_.try_emplace(edge, normal);
         if (inserted) {
