@@ -20,7 +20,10 @@ constexpr std::array kProblems = {
     ProblemEntry{"inversion", inversion},
     ProblemEntry{"interpolation", interpolation},
     ProblemEntry{"stopping", stopping},
+    ProblemEntry{"resting", resting},
+    ProblemEntry{"impact", impact},
     ProblemEntry{"arch", arch},
+    ProblemEntry{"card_house", card_house},
 };
 
 }  // namespace

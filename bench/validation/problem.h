@@ -86,7 +86,10 @@ Result buckling(Effort effort);
 Result inversion(Effort effort);
 Result interpolation(Effort effort);
 Result stopping(Effort effort);
+Result resting(Effort effort);
+Result impact(Effort effort);
 Result arch(Effort effort);
+Result card_house(Effort effort);
 
 // A number with four significant digits.
 std::string short_number(double value);
