@@ -22,6 +22,7 @@ constexpr std::array kProblems = {
     ProblemEntry{"stopping", stopping},
     ProblemEntry{"resting", resting},
     ProblemEntry{"impact", impact},
+    ProblemEntry{"corner_cases", corner_cases},
     ProblemEntry{"arch", arch},
     ProblemEntry{"card_house", card_house},
 };

@@ -88,6 +88,7 @@ Result interpolation(Effort effort);
 Result stopping(Effort effort);
 Result resting(Effort effort);
 Result impact(Effort effort);
+Result corner_cases(Effort effort);
 Result arch(Effort effort);
 Result card_house(Effort effort);
 
