@@ -1,5 +1,5 @@
-// What contact costs, as ratios from one run: contact points of a hopper, a pile of spheres beside spheres
-// that do not touch, and two threads beside one.
+// What contact costs, as ratios from one run: contact points of a hopper, a sphere of a pile beside one alone
+// in the same bowl, and two threads beside one for the pile and for spheres that do not touch.
 //   contact_bench
 #include <algorithm>
 #include <chrono>
@@ -63,8 +63,10 @@ int main() {
   Run runs[] = {{pile_world({.spheres = kSpheres}, kStep), 1},
                 {pile_world({.spheres = kSpheres}, kStep), 2},
                 {apart_world(kSpheres, kStep), 1},
-                {apart_world(kSpheres, kStep), 2}};
-  std::printf("%d spheres: pile over apart (one thread), two threads over one: pile, apart\n", kSpheres);
+                {apart_world(kSpheres, kStep), 2},
+                {pile_world({.spheres = 1}, kStep), 1}};
+  std::printf("%d spheres: one of the pile over one alone (one thread), two threads over one: pile, apart\n",
+              kSpheres);
   for (const auto& [name, end] :
        {std::pair("falling", 25), std::pair("landing", 90), std::pair("coming to rest", 180)}) {
     for (Run& run : runs) run.seconds = 0;
@@ -74,8 +76,9 @@ int main() {
         run.seconds += step_seconds(run.world, 1);
       }
     }
-    std::printf("  until step %3d, %-15s %6.2f %8.2f %6.2f\n", end, name, runs[0].seconds / runs[2].seconds,
-                runs[0].seconds / runs[1].seconds, runs[2].seconds / runs[3].seconds);
+    std::printf("  until step %3d, %-15s %6.2f %8.2f %6.2f\n", end, name,
+                runs[0].seconds / kSpheres / runs[4].seconds, runs[0].seconds / runs[1].seconds,
+                runs[2].seconds / runs[3].seconds);
     std::fflush(stdout);
   }
   return 0;

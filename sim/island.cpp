@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "common/parallel.h"
 #include "common/registry.h"
 #include "common/text.h"
-#include "sim/contact/step_bound.h"
 #include "sim/solve/processor_time.h"
 
 namespace vivify::sim {
@@ -17,13 +17,10 @@ constexpr int kMaxContactPasses = 3;     // solves of one step while contact pla
 constexpr double kPlaneTolerance = 0.1;  // of the contact layer: how far a plane may be from the true surface
 constexpr double kReach = 2;          // of the travel of a body in a step: how far a collider is looked for
 constexpr double kNear = 0.05;        // and of its height
-constexpr double kPairReach = 0.01;   // of the heights of two bodies
 constexpr double kRelaxedRest = 0.8;  // a body stuck on a collapsed rest shape relaxes it by this factor
 constexpr int kMaxStepSplits = 6;     // a step that cannot be solved is cut in halves so many times
 constexpr double kTimeLimit = 100;    // of the median of the last steps: a step that takes longer is given up
-constexpr double kLeastTimeLimit = 10;  // s
-constexpr double kCrossing =
-    1e-3;  // of their distance before: features of thin bodies that get so near would cross
+constexpr double kLeastTimeLimit = 10;   // s
 constexpr std::size_t kNamedBodies = 4;  // in a message
 constexpr std::size_t kTimedSteps = 50, kFewestTimedSteps = 5;
 
@@ -81,23 +78,6 @@ const PairMemory* find(const std::vector<PairMemory>& memory, const PairIdentity
 }
 
 }  // namespace
-
-BodyPairs near_places(const Member& a, const Member& b, double h) {
-  BodyPairs near = {a.index, b.index, {}};
-  const SurfaceState &of_a = a.body->surface(), &of_b = b.body->surface();
-  const double reach = pair_reach(*a.body, h) + pair_reach(*b.body, h);
-  if (a.index == b.index) {
-    near.pairs = near_self_pairs(of_a, reach);
-  } else if (boxes_near(of_a, of_b, reach)) {
-    near.pairs = near_pairs(of_a, of_b, reach);
-  }
-  return near;
-}
-
-double pair_reach(const Body& body, double h) {
-  const BodyModel& model = body.model();
-  return model.surface.radius + model.contact.layer + body.travel(h) + kPairReach * model.height;
-}
 
 Island::Island(std::vector<Member> members, const WorldSettings& settings)
     : settings_(settings), members_(std::move(members)) {
@@ -210,16 +190,9 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
   return contacts;
 }
 
-std::vector<BodyPairs> Island::near_places(const Eigen::VectorXd& x, double h) const {
-  std::vector<BodyPairs> pairs;
+std::vector<BodyPairs> Island::near_members(const Eigen::VectorXd& x, double h) const {
   move_surfaces(x);
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    for (std::size_t n = members_[m].body->model().contact.self ? m : m + 1; n < members_.size(); ++n) {
-      BodyPairs near = sim::near_places(members_[m], members_[n], h);
-      if (!near.pairs.empty()) pairs.push_back(std::move(near));
-    }
-  }
-  return pairs;
+  return near_bodies(members_, h);
 }
 
 // Whether every near place that touches is a contact of `contacts` whose frozen plane describes it.
@@ -246,39 +219,26 @@ bool Island::pairs_hold(const std::vector<BodyPairs>& pairs, const PairContacts&
 }
 
 bool Island::passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-  const auto thin = [&](std::size_t m) { return members_[m].body->model().surface.two_sided; };
-  if (std::none_of(members_.begin(), members_.end(),
-                   [](const Member& member) { return member.body->model().surface.two_sided; }))
-    return false;
+  std::vector<Eigen::VectorXd> moves;
+  for (std::size_t m = 0; m < members_.size(); ++m) moves.push_back(part(to - from, m));
   move_surfaces(from);
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    const SurfaceState& of_m = members_[m].body->surface();
-    const Eigen::VectorXd moved = part(to - from, m);
-    if (thin(m) && members_[m].body->model().contact.self && self_step_bound(of_m, moved, kCrossing) < 1)
-      return true;
-    for (std::size_t n = m + 1; n < members_.size(); ++n) {
-      if (!thin(m) && !thin(n)) continue;
-      if (step_bound(of_m, moved, members_[n].body->surface(), part(to - from, n), kCrossing) < 1)
-        return true;
-    }
-  }
-  return false;
+  return !crossing_bodies(members_, moves, [](int, int) { return true; }).empty();
 }
 
-StepSolution Island::solve(const StepProblem& problem, const Eigen::VectorXd& x_n,
-                           const Eigen::VectorXd& start, StepRecord& record) {
+StepSolution Island::solve(const StepProblem& problem, const Eigen::VectorXd& x_n, const Eigen::VectorXd& q,
+                           const Eigen::VectorXd& x, StepRecord& record) {
   const Eigen::VectorXd& q_n = problem.q_n();
   if (q_n.size() == 0) {
     StepSolution solution;
     record.method = "keyed";
     solution.rest = problem.rest_point(q_n, false);
-    solution.at = problem.deformed_point(start);
+    solution.at = problem.deformed_point(x);
     finish_exactly(problem, solution, *workspace_);
     return solution;
   }
   const auto attempt = [&](const std::string& method) {
     StepSolution solution =
-        find_entry(step_methods(), method, "step method").solve(problem, q_n, start, *workspace_);
+        find_entry(step_methods(), method, "step method").solve(problem, q, x, *workspace_);
     record.iterations += solution.iterations;
     record.halvings += solution.halvings;
     record.guards += solution.guards;
@@ -300,10 +260,10 @@ StepSolution Island::solve(const StepProblem& problem, const Eigen::VectorXd& x_
   record.fallback = 2;
   record.method = "hold";
   for (const double keep : {1.0, kRelaxedRest, kRelaxedRest * kRelaxedRest}) {
-    for (const Eigen::VectorXd& x : {start, x_n}) {
+    for (const Eigen::VectorXd& start : {x, x_n}) {
       StepSolution hold;
       hold.rest = problem.rest_point(keep * q_n, true);
-      hold.at = problem.deformed_point(x);
+      hold.at = problem.deformed_point(start);
       finish_exactly(problem, hold, *workspace_);
       if (hold.exact) return hold;
     }
@@ -321,15 +281,17 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   std::vector<Goals> own_goals(count);
   std::vector<double> reaches(count);
   std::vector<ContactSet> contacts(count);
-  const auto touch_colliders = [&](std::size_t m, const Eigen::VectorXd& x, bool settled) {
-    const BodyModel& model = members_[m].body->model();
-    ContactParameters parameters = model.contact;
-    if (count > 1) {  // one point of a light body may have to bear the heaviest of the island
-      parameters.normal_stiffness = heaviest_ / (parameters.layer * parameters.layer);
-      parameters.friction_stiffness = 2 * heaviest_ / parameters.layer;
-    }
-    contacts[m] = ContactSet(model.contact_points, parameters, colliders, x, reaches[m],
-                             members_[m].body->state().contacts, end - h, end, settled);
+  const auto touch_colliders = [&](const Eigen::VectorXd& x, bool settled) {
+    parallel_for(count, [&](std::size_t m) {
+      const BodyModel& model = members_[m].body->model();
+      ContactParameters parameters = model.contact;
+      if (count > 1) {  // one point of a light body may have to bear the heaviest of the island
+        parameters.normal_stiffness = heaviest_ / (parameters.layer * parameters.layer);
+        parameters.friction_stiffness = 2 * heaviest_ / parameters.layer;
+      }
+      contacts[m] = ContactSet(model.contact_points, parameters, colliders, part(x, m), reaches[m],
+                               members_[m].body->state().contacts, end - h, end, settled);
+    });
   };
   for (std::size_t m = 0; m < count; ++m) {
     const BodyModel& model = members_[m].body->model();
@@ -347,10 +309,10 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
       steps[m].q = same ? before[m].q : Eigen::VectorXd((1 - share) * before[m].q + share * *wishes[m].q);
     }
     reaches[m] = model.contact.layer + kReach * members_[m].body->travel(h) + kNear * model.height;
-    touch_colliders(m, state.x, false);
   }
   const Goals goals = joined(own_goals, x_n);
   const Eigen::VectorXd x_start = joined(x_n), start = joined(starts);
+  touch_colliders(x_start, false);
   PairContacts pairs = pair_contacts(first_pairs, memory, nullptr);
   const bool may_touch = count > 1 || members_[0].body->model().contact.self;
 
@@ -359,21 +321,24 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   std::optional<StepProblem> problem;
   for (int pass = 1;; ++pass) {
     problem.emplace(steps, &pairs, goals, h);
-    solution = solve(*problem, x_start, start, shared);
+    // The solution of the pass before is near that of the next.
+    solution = pass == 1 ? solve(*problem, x_start, problem->q_n(), start, shared)
+                         : solve(*problem, x_start, solution.rest.q, solution.at.x, shared);
     if (!solution.exact || pass == kMaxContactPasses) break;
-    bool hold = true;
-    for (std::size_t m = 0; m < count && hold; ++m) {
-      hold = contacts[m].planes_hold(colliders, problem->x_of(m, solution.at.x),
-                                     kPlaneTolerance * members_[m].body->model().contact.layer);
-    }
+    std::vector<char> planes_hold(count);
+    parallel_for(count, [&](std::size_t m) {
+      planes_hold[m] = contacts[m].planes_hold(colliders, part(solution.at.x, m),
+                                               kPlaneTolerance * members_[m].body->model().contact.layer);
+    });
+    bool hold = std::find(planes_hold.begin(), planes_hold.end(), false) == planes_hold.end();
     std::vector<BodyPairs> places;
     if (may_touch) {
-      places = near_places(solution.at.x, h);
+      places = near_members(solution.at.x, h);
       hold = hold && pairs_hold(places, pairs, solution.at.x);
     }
     if (hold) break;
     if (may_touch) pairs = pair_contacts(places, memory, &pairs);
-    for (std::size_t m = 0; m < count; ++m) touch_colliders(m, problem->x_of(m, solution.at.x), true);
+    touch_colliders(solution.at.x, true);
   }
   for (StepRecord& record : records) {
     record.method = shared.method;
@@ -392,7 +357,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   }
 
   memory = pairs.memory(solution.at.x);
-  for (std::size_t m = 0; m < count; ++m) {
+  parallel_for(count, [&](std::size_t m) {
     Body& body = *members_[m].body;
     Body::State& state = body.state();
     const Eigen::VectorXd q = problem->q_of(m, solution.rest.q);
@@ -405,28 +370,18 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     state.q = q;
     contacts[m].update_memory(x, state.contacts);
     body.measure(*problem, m, solution.at, solution.rest, records[m]);
-  }
+  });
   return true;
 }
 
 std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& colliders,
+                                     const std::vector<Body::Wish>& wishes,
                                      const std::vector<BodyPairs>& pairs, std::vector<PairMemory>& memory) {
   const auto begin = std::chrono::steady_clock::now();
   const double processor_begin = processor_seconds();
   const std::vector<PairMemory> memory_before = memory;
-  std::vector<Body::Wish> wishes;
   std::vector<Body::State> before;
-  for (const Member& member : members_) {
-    double load = 0;
-    for (const PairMemory& touching : memory) {
-      if (touching.identity.body_a == member.index || touching.identity.body_b == member.index)
-        load += touching.normal_force;
-    }
-    const double end = static_cast<double>(step) * settings_.h;
-    wishes.push_back(member.body->wish(
-        step, load, ground_velocity(member.body->state().contacts, colliders, end - settings_.h, end)));
-    before.push_back(member.body->state());
-  }
+  for (const Member& member : members_) before.push_back(member.body->state());
 
   deadline_ = step_deadline();
   if (workspace_) workspace_->deadline = deadline_;
@@ -456,7 +411,7 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
         std::vector<Eigen::VectorXd> x;
         for (const Member& member : members_) x.push_back(member.body->x());
         solved =
-            advance(end, h, share, wishes, before, colliders, near_places(joined(x), h), memory, records);
+            advance(end, h, share, wishes, before, colliders, near_members(joined(x), h), memory, records);
       }
     }
     if (solved) break;
@@ -499,9 +454,10 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
       ++records[m].contacts;
       records[m].max_penetration = std::max(records[m].max_penetration, -touching.distance);
     }
-    members_[m].body->finish_record(step, colliders, records[m]);
     members_[m].body->add_wall_seconds(seconds / static_cast<double>(members_.size()));
   }
+  parallel_for(members_.size(),
+               [&](std::size_t m) { members_[m].body->finish_record(step, colliders, records[m]); });
   note_step_time(processor_seconds() - processor_begin);
   return records;
 }

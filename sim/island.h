@@ -9,34 +9,23 @@
 #include <span>
 #include <vector>
 
-#include "sim/body.h"
 #include "sim/contact/pair_contacts.h"
+#include "sim/near_bodies.h"
 #include "sim/solve/step_method.h"
 
 namespace vivify::sim {
-
-// A body and its number in the world.
-struct Member {
-  int index;
-  Body* body;
-};
-
-// The near places of two members (body a may be body b: contact with itself).
-struct BodyPairs {
-  int a, b;  // numbers in the world, a <= b
-  std::vector<SurfacePair> pairs;
-};
 
 class Island {
  public:
   // The members are in ascending order of their numbers, and of one dimension.
   Island(std::vector<Member> members, const WorldSettings& settings);
 
-  // One implicit Euler step of every member; `step` counts from 1. `pairs` are the near places at its start;
-  // `memory` holds what touched at the end of the last step, and is renewed. Throws Error(numerical) when no
-  // exact step can be found.
+  // One implicit Euler step of every member towards its wish; `step` counts from 1. `pairs` are the near
+  // places at its start; `memory` holds what touched at the end of the last step, and is renewed. Throws
+  // Error(numerical) when no exact step can be found.
   std::vector<StepRecord> step(long step, const std::vector<Collider>& colliders,
-                               const std::vector<BodyPairs>& pairs, std::vector<PairMemory>& memory);
+                               const std::vector<Body::Wish>& wishes, const std::vector<BodyPairs>& pairs,
+                               std::vector<PairMemory>& memory);
 
  private:
   // One step of size h to the time `end` towards the wishes; `share` is how much of the whole step has passed
@@ -45,18 +34,19 @@ class Island {
                const std::vector<Body::State>& before, const std::vector<Collider>& colliders,
                const std::vector<BodyPairs>& pairs, std::vector<PairMemory>& memory,
                std::vector<StepRecord>& records);
-  StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& x_n, const Eigen::VectorXd& start,
-                     StepRecord& record);
+  // From the guess q, x; `x_n` are the positions before the step.
+  StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& x_n, const Eigen::VectorXd& q,
+                     const Eigen::VectorXd& x, StepRecord& record);
   // Contacts between the members at the places `pairs`, bound to a pattern that holds them; `last` are those
   // of the pass before.
   PairContacts pair_contacts(const std::vector<BodyPairs>& pairs, const std::vector<PairMemory>& memory,
                              const PairContacts* last);
   void bind(PairContacts& contacts);
   // Where members are near one another when they are at x.
-  std::vector<BodyPairs> near_places(const Eigen::VectorXd& x, double h) const;
+  std::vector<BodyPairs> near_members(const Eigen::VectorXd& x, double h) const;
   bool pairs_hold(const std::vector<BodyPairs>& pairs, const PairContacts& contacts,
                   const Eigen::VectorXd& x) const;
-  // Whether members of which one is thin would touch on straight lines from one state to another.
+  // Whether thin members would cross on straight lines from one state to another.
   bool passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
   std::size_t member(int index) const;  // place in the list of the member with this number
   const BodyModel& model_of(int index) const { return members_[member(index)].body->model(); }
@@ -77,10 +67,5 @@ class Island {
   bool crossed_ = false;              // the last part of a step failed because thin bodies would cross
   std::vector<double> step_seconds_;  // processor time of the last steps, for the time limit
 };
-
-// How far a body looks for others in a step of size h, m.
-double pair_reach(const Body& body, double h);
-// Where the bodies a and b (or a and itself) are near each other, before a step of size h.
-BodyPairs near_places(const Member& a, const Member& b, double h);
 
 }  // namespace vivify::sim

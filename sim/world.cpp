@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "common/error.h"
 #include "common/parallel.h"
@@ -39,13 +40,16 @@ PairMemory memory_of(const Eigen::RowVectorXd& row) {
 World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders,
              const WorldSettings& settings)
     : settings_(settings), colliders_(std::move(colliders)) {
-  for (const BodyInput& input : bodies) bodies_.push_back(std::make_unique<Body>(input, settings_));
+  for (const BodyInput& input : bodies) {
+    bodies_.push_back(std::make_unique<Body>(input, settings_));
+    members_.push_back({body_count() - 1, bodies_.back().get()});
+  }
   if (!settings_.statics) require_apart();
 }
 
 // Contact pushes bodies apart that start a little inside each other; deeper ones would burst apart.
 void World::require_apart() {
-  for (const BodyPairs& between : near_bodies()) {
+  for (const BodyPairs& between : find_near()) {
     if (between.a == between.b) continue;
     const BodyModel &a = bodies_[between.a]->model(), &b = bodies_[between.b]->model();
     double depth = 0;
@@ -60,89 +64,140 @@ void World::require_apart() {
   }
 }
 
-// Where bodies are near one another, in the order of the bodies.
-std::vector<BodyPairs> World::near_bodies() {
+std::vector<BodyPairs> World::find_near() {
   if (bodies_.size() == 1 && !bodies_[0]->model().contact.self) return {};
-  std::vector<BoundingBox> boxes(bodies_.size());
-  parallel_for(bodies_.size(), [&](std::size_t b) {
-    Body& body = *bodies_[b];
-    body.move_surface(body.x());
-    boxes[b] = body.surface().box();
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(pair_reach(body, settings_.h));
-    boxes[b].extend(boxes[b].max() + reach).extend(boxes[b].min() - reach);
-  });
-  std::vector<std::pair<int, int>> candidates;
-  for (const auto& [a, b] : near_boxes(boxes, 0)) {
-    if (bodies_[a]->model().dimension() == bodies_[b]->model().dimension()) candidates.emplace_back(a, b);
-  }
-  for (int b = 0; b < body_count(); ++b) {
-    if (bodies_[b]->model().contact.self) candidates.emplace_back(b, b);
-  }
-  std::vector<BodyPairs> pairs(candidates.size());
-  parallel_for(candidates.size(), [&](std::size_t i) {
-    const auto [a, b] = candidates[i];
-    pairs[i] = near_places({a, bodies_[a].get()}, {b, bodies_[b].get()}, settings_.h);
-  });
-  std::erase_if(pairs, [](const BodyPairs& between) { return between.pairs.empty(); });
-  std::sort(pairs.begin(), pairs.end(),
-            [](const BodyPairs& a, const BodyPairs& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
-  return pairs;
+  parallel_for(bodies_.size(), [&](std::size_t b) { bodies_[b]->move_surface(bodies_[b]->x()); });
+  return near_bodies(members_, settings_.h);
 }
 
-void World::group(const std::vector<BodyPairs>& pairs) {
+std::vector<Body::Wish> World::wishes() {
+  std::vector<double> loads(bodies_.size(), 0);
+  for (const PairMemory& touching : touching_) {
+    for (const int b : std::set{touching.identity.body_a, touching.identity.body_b})
+      loads[b] += touching.normal_force;
+  }
+  std::vector<Body::Wish> wishes(bodies_.size());
+  const double end = time(), begin = end - settings_.h;
+  parallel_for(bodies_.size(), [&](std::size_t b) {
+    wishes[b] = bodies_[b]->wish(steps_, loads[b],
+                                 ground_velocity(bodies_[b]->state().contacts, colliders_, begin, end));
+  });
+  return wishes;
+}
+
+std::vector<std::vector<int>> World::groups_of(const Links& links) const {
   std::vector<int> first(bodies_.size());  // of the island that a body is in
   std::iota(first.begin(), first.end(), 0);
   const auto root = [&](int b) {
     while (first[b] != b) b = first[b];
     return b;
   };
-  for (const BodyPairs& between : pairs) {
-    const auto [low, high] = std::minmax({root(between.a), root(between.b)});
+  for (const auto& [a, b] : links) {
+    const auto [low, high] = std::minmax({root(a), root(b)});
     first[high] = low;
   }
   std::map<int, std::vector<int>> groups;
   for (int b = 0; b < body_count(); ++b) groups[root(b)].push_back(b);
-  grouping_.clear();
-  for (auto& [low, group] : groups) grouping_.push_back(std::move(group));
+  std::vector<std::vector<int>> list;
+  for (auto& [low, group] : groups) list.push_back(std::move(group));
+  return list;
+}
 
-  std::erase_if(islands_, [&](const auto& island) {
-    return island.first.size() > 1 &&
-           std::find(grouping_.begin(), grouping_.end(), island.first) == grouping_.end();
-  });
-  for (const std::vector<int>& group : grouping_) {
-    if (islands_.contains(group)) continue;
-    std::vector<Member> members;
-    for (const int b : group) members.push_back({b, bodies_[b].get()});
-    islands_.emplace(group, std::make_unique<Island>(std::move(members), settings_));
+World::IslandStep World::solve(const std::vector<int>& group, const std::vector<Body::Wish>& wishes,
+                               const std::vector<BodyPairs>& near) {
+  const auto in_group = [&](int b) { return std::binary_search(group.begin(), group.end(), b); };
+  std::vector<Body::Wish> own_wishes;
+  for (const int b : group) own_wishes.push_back(wishes[b]);
+  std::vector<BodyPairs> own_near;
+  std::copy_if(near.begin(), near.end(), std::back_inserter(own_near),
+               [&](const BodyPairs& between) { return in_group(between.a) && in_group(between.b); });
+  IslandStep result;
+  std::copy_if(touching_.begin(), touching_.end(), std::back_inserter(result.touching),
+               [&](const PairMemory& memory) {
+                 return in_group(memory.identity.body_a) && in_group(memory.identity.body_b);
+               });
+  result.records = islands_.at(group)->step(steps_, colliders_, own_wishes, own_near, result.touching);
+  return result;
+}
+
+World::Links World::met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after) {
+  std::vector<int> island(bodies_.size());
+  for (std::size_t i = 0; i < grouping_.size(); ++i) {
+    for (const int b : grouping_[i]) island[b] = static_cast<int>(i);
   }
+  const auto apart = [&](int a, int b) { return island[a] != island[b]; };
+  std::vector<Eigen::VectorXd> moves;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    moves.push_back(bodies_[b]->x() - before[b].x);
+    bodies_[b]->move_surface(before[b].x);
+  }
+  Links links = crossing_bodies(members_, moves, apart);
+  for (const BodyPairs& between : near_after) {
+    if (!apart(between.a, between.b)) continue;
+    const BodyModel &a = bodies_[between.a]->model(), &b = bodies_[between.b]->model();
+    const double layer = std::max(a.contact.layer, b.contact.layer) + a.surface.radius + b.surface.radius;
+    if (std::any_of(between.pairs.begin(), between.pairs.end(),
+                    [&](const SurfacePair& pair) { return pair.distance < layer; }))
+      links.emplace_back(between.a, between.b);
+  }
+  return links;
 }
 
 void World::step() {
   ++steps_;
-  const std::vector<BodyPairs> pairs = settings_.statics ? std::vector<BodyPairs>() : near_bodies();
-  group(pairs);
+  const std::vector<Body::Wish> wanted = wishes();
+  std::vector<Body::State> before;
+  for (const auto& body : bodies_) before.push_back(body->state());
+  std::vector<BodyPairs> near = settings_.statics ? std::vector<BodyPairs>() : near_ ? *near_ : find_near();
+  Links links;
+  for (const BodyPairs& between : near) links.emplace_back(between.a, between.b);
 
-  std::vector<std::vector<StepRecord>> records(grouping_.size());
-  std::vector<std::vector<PairMemory>> touching(grouping_.size());
-  parallel_for(grouping_.size(), [&](std::size_t i) {
-    const std::vector<int>& group = grouping_[i];
-    const auto in_group = [&](int b) { return std::binary_search(group.begin(), group.end(), b); };
-    std::vector<BodyPairs> own;
-    std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(own),
-                 [&](const BodyPairs& between) { return in_group(between.a); });
-    std::copy_if(touching_.begin(), touching_.end(), std::back_inserter(touching[i]),
-                 [&](const PairMemory& memory) {
-                   return in_group(memory.identity.body_a) && in_group(memory.identity.body_b);
-                 });
-    records[i] = islands_.at(group)->step(steps_, colliders_, own, touching[i]);
-  });
+  std::map<std::vector<int>, IslandStep> solved;
+  for (;;) {
+    grouping_ = groups_of(links);
+    const auto is_current = [&](const std::vector<int>& group) {
+      return std::binary_search(grouping_.begin(), grouping_.end(), group);
+    };
+    std::erase_if(solved, [&](const auto& entry) { return !is_current(entry.first); });
+    std::erase_if(islands_,
+                  [&](const auto& entry) { return entry.first.size() > 1 && !is_current(entry.first); });
+    std::vector<const std::vector<int>*> open;
+    for (const std::vector<int>& group : grouping_) {
+      if (solved.contains(group)) continue;
+      open.push_back(&group);
+      std::vector<Member> members;
+      for (const int b : group) {
+        members.push_back(members_[b]);
+        bodies_[b]->state() = before[b];
+      }
+      if (!islands_.contains(group))
+        islands_.emplace(group, std::make_unique<Island>(std::move(members), settings_));
+    }
+    std::vector<IslandStep> results(open.size());
+    parallel_for(open.size(), [&](std::size_t i) { results[i] = solve(*open[i], wanted, near); });
+    for (std::size_t i = 0; i < open.size(); ++i) solved[*open[i]] = std::move(results[i]);
+
+    if (settings_.statics) break;
+    near_ = find_near();
+    if (grouping_.size() == 1) break;
+    const Links meetings = met(before, *near_);
+    if (meetings.empty()) break;
+    for (const auto& [a, b] : meetings) links.emplace_back(a, b);
+    // What was not near before is near where the bodies met.
+    for (const BodyPairs& between : *near_) {
+      const std::pair link(between.a, between.b);
+      if (std::find(meetings.begin(), meetings.end(), link) != meetings.end()) near.push_back(between);
+    }
+    std::sort(near.begin(), near.end(), [](const BodyPairs& a, const BodyPairs& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
+  }
 
   touching_.clear();
   std::vector<StepRecord> in_order(bodies_.size());
-  for (std::size_t i = 0; i < grouping_.size(); ++i) {
-    touching_.insert(touching_.end(), touching[i].begin(), touching[i].end());
-    for (std::size_t m = 0; m < grouping_[i].size(); ++m)
-      in_order[static_cast<std::size_t>(grouping_[i][m])] = std::move(records[i][m]);
+  for (auto& [group, result] : solved) {
+    touching_.insert(touching_.end(), result.touching.begin(), result.touching.end());
+    for (std::size_t m = 0; m < group.size(); ++m) in_order[group[m]] = std::move(result.records[m]);
   }
   std::sort(touching_.begin(), touching_.end(),
             [](const PairMemory& a, const PairMemory& b) { return a.identity < b.identity; });
@@ -169,6 +224,7 @@ void World::restore(const Hdf5Reader& file) {
   steps_ = static_cast<long>(file.integer("/step"));
   records_.clear();
   touching_.clear();
+  near_.reset();
   for (const auto& body : bodies_) body->restore(file, "/bodies/" + body->model().name);
   if (!file.has("/touching")) return;
   const RowMatrixXd rows = file.matrix("/touching");

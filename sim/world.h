@@ -1,9 +1,11 @@
 // All bodies and colliders of a scene, stepped together. Bodies that may touch in a step are solved as one
-// island; islands are independent and run in parallel.
+// island; islands are independent and run in parallel. Islands that met nevertheless are solved again as one.
 #pragma once
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "sim/island.h"
@@ -36,16 +38,31 @@ class World {
   void restore(const Hdf5Reader& file);
 
  private:
-  std::vector<BodyPairs> near_bodies();
+  // Near places of all bodies where they are.
+  std::vector<BodyPairs> find_near();
   void require_apart();
-  void group(const std::vector<BodyPairs>& pairs);
+  std::vector<Body::Wish> wishes();
+  // The numbers of the bodies of each island when the bodies of a link are in one.
+  using Links = std::vector<std::pair<int, int>>;
+  std::vector<std::vector<int>> groups_of(const Links& links) const;
+  // Solves one island from the states at the start of the step.
+  struct IslandStep {
+    std::vector<StepRecord> records;
+    std::vector<PairMemory> touching;
+  };
+  IslandStep solve(const std::vector<int>& group, const std::vector<Body::Wish>& wishes,
+                   const std::vector<BodyPairs>& near);
+  // Bodies of different islands that touch or have crossed at the end of the step.
+  Links met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after);
 
   WorldSettings settings_;
   std::vector<Collider> colliders_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<Member> members_;
   std::vector<std::vector<int>> grouping_;
-  std::map<std::vector<int>, std::unique_ptr<Island>>
-      islands_;  // those of the last step, and every body alone
+  // Those of the last step, and every body alone.
+  std::map<std::vector<int>, std::unique_ptr<Island>> islands_;
+  std::optional<std::vector<BodyPairs>> near_;  // at the end of the last step
   std::vector<PairMemory> touching_;
   std::vector<StepRecord> records_;
   long steps_ = 0;

@@ -57,6 +57,41 @@ TEST(Island, ApartBodiesAreAlone) {
   EXPECT_EQ(world.islands(), (std::vector<std::vector<int>>{{0}, {1}}));
 }
 
+TEST(Island, BodiesThatFlySideBySideAreAlone) {
+  BodyInput a = box("a", {0, 0, 0}), b = box("b", {0.55, 0, 0});
+  a.velocity = b.velocity = {3, -20, 1};
+  World world({a, b}, {}, {{0, -9.81, 0}, 0.02});
+  for (int step = 0; step < 5; ++step) {
+    world.step();
+    EXPECT_EQ(world.islands().size(), 2u) << step;
+  }
+}
+
+// A wall knocks the first box into the second within one step; both were at rest and apart.
+TEST(Island, BodiesThatMeetWithinAStepAreSolvedAgainAsOne) {
+  const double gap = 0.02, h = 0.02;
+  const RigidPath knock({{0, {0, 0, 0}, {0, 0, 0}, {}}, {h, {0.1, 0, 0}, {0, 0, 0}, {}}}, false);
+  ShapePlace wall;
+  wall.pose.linear() = Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  wall.pose.translation().x() = -0.202;
+  std::vector<Collider> colliders;
+  colliders.emplace_back(
+      "wall", make_collider_shape(settings(collider_shape_schema(), "{type: plane}"), wall), 0.0, knock);
+  World world({box("a", {0, 0, 0}, {.model = kStiff}), box("b", {0.4 + gap, 0, 0}, {.model = kStiff}),
+               box("far", {9, 0, 0})},
+              std::move(colliders), {{0, 0, 0}, h});
+  world.step();
+  EXPECT_EQ(world.islands(), (std::vector<std::vector<int>>{{0, 1}, {2}}));
+  EXPECT_FALSE(world.touching().empty());
+  ASSERT_EQ(world.records().size(), 3u);
+  for (const StepRecord& record : world.records()) {
+    EXPECT_EQ(record.step, 1);
+    EXPECT_LE(record.residual_rel, 1e-8);
+  }
+  for (const PairMemory& touching : world.touching()) EXPECT_GT(touching.distance, -0.005);
+  EXPECT_GT(centre_of_mass(world.body(1).model().mass, world.body(1).v()).x(), 0.1);
+}
+
 TEST(Island, BodiesThatFallOnOneAnotherStackAndRest) {
   World world(
       {box("lower", {0, 0.255, 0}, {.model = kStiff}), box("upper", {0.02, 0.765, 0.03}, {.model = kStiff})},

@@ -1,0 +1,37 @@
+// Which bodies may touch in a step, and where.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "sim/body.h"
+#include "sim/contact/surface_pairs.h"
+
+namespace vivify::sim {
+
+// A body and its number in the world.
+struct Member {
+  int index;
+  Body* body;
+};
+
+// The near places of two members (body a may be body b: contact with itself).
+struct BodyPairs {
+  int a, b;  // numbers in the world, a <= b
+  std::vector<SurfacePair> pairs;
+};
+
+// Where members are near each other, their surfaces where they were moved to: as far apart as their
+// velocities may close in a step of size h. Bodies that fly side by side are near only if they are close. In
+// the order of the numbers (the members' order is ascending); bodies of different dimensions never meet.
+std::vector<BodyPairs> near_bodies(const std::vector<Member>& members, double h);
+
+// Numbers (a <= b) of the members that would touch on straight lines from their surfaces by `moves` (d #V
+// each) although one of them is thin, among those that `wanted(a, b)` asks for: what has no inside cannot be
+// pushed back out.
+std::vector<std::pair<int, int>> crossing_bodies(const std::vector<Member>& members,
+                                                 const std::vector<Eigen::VectorXd>& moves,
+                                                 const std::function<bool(int, int)>& wanted);
+
+}  // namespace vivify::sim
