@@ -19,6 +19,7 @@ constexpr std::array kProblems = {
     ProblemEntry{"buckling", buckling},
     ProblemEntry{"inversion", inversion},
     ProblemEntry{"interpolation", interpolation},
+    ProblemEntry{"slope", slope},
     ProblemEntry{"stopping", stopping},
     ProblemEntry{"resting", resting},
     ProblemEntry{"impact", impact},

@@ -85,6 +85,7 @@ Result large_deflection(Effort effort);
 Result buckling(Effort effort);
 Result inversion(Effort effort);
 Result interpolation(Effort effort);
+Result slope(Effort effort);
 Result stopping(Effort effort);
 Result resting(Effort effort);
 Result impact(Effort effort);
