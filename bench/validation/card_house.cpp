@@ -44,7 +44,7 @@ void lean(double x, double y, std::vector<SimMesh>& cards) {
   }
 }
 
-// Storeys of leaning pairs with flat cards between them, from the ground up.
+// Storeys of leaning pairs with one flat card over each but the last, from the ground up.
 std::vector<SimMesh> house(int storeys) {
   const double angle = kLean * std::numbers::pi / 180;
   const double pitch = 2 * kLength * std::sin(angle) + 3 * kThickness, rise = kLength * std::cos(angle);
@@ -53,9 +53,9 @@ std::vector<SimMesh> house(int storeys) {
   for (int pairs = storeys; pairs > 0; --pairs) {
     for (int i = 0; i < pairs; ++i) lean((i - 0.5 * (pairs - 1)) * pitch, y, cards);
     y += rise + kThickness;
-    for (int i = 0; i + 1 < pairs; ++i) {
-      const double middle = (i - 0.5 * (pairs - 2)) * pitch;
-      cards.push_back(card({middle - kLength / 2, y}, {middle + kLength / 2, y}));
+    if (pairs > 1) {
+      const double half = 0.5 * (pairs - 2) * pitch + 0.5 * kLength;
+      cards.push_back(card({-half, y}, {half, y}));
     }
     y += kThickness;
   }
@@ -102,8 +102,8 @@ Result card_house(Effort effort) {
   result.title = "A house of cards";
   result.text =
       "Cards (`shell3d`, 0.2 m by 0.14 m, 4 mm thick) that lean against one another at 20° to the "
-      "vertical, with flat cards between the storeys; μ = 1. After one second of settling no centre of "
-      "a card may move by more than 1 mm in 5 s.";
+      "vertical, with a flat card between two storeys; μ = 1. After one second of settling no centre "
+      "of a card may move by more than 1 mm in 5 s.";
   Plot plot{"card_house", "Height of the highest card of a house", "t (s)", "height (m)"};
   const std::vector<int> storeys = effort == Effort::full ? std::vector<int>{1, 2, 3} : std::vector<int>{2};
   for (const int count : storeys) {
