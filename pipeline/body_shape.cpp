@@ -121,6 +121,14 @@ BodyShape make_body_shape(const Scene& scene, const Value& body) {
   throw Error(ErrorKind::internal, "a body is of no kind");
 }
 
+meshing::Skin load_skin(const Hdf5Reader& file) {
+  meshing::Skin skin;
+  skin.embedding = {file.int_vector("/embedding/element"), file.matrix("/embedding/weights")};
+  if (file.has("/embedding/offset")) skin.offset = file.vector("/embedding/offset");
+  if (file.has("/embedding/depth")) skin.depth = file.vector("/embedding/depth");
+  return skin;
+}
+
 meshing::Outline placed_outline(const Scene& scene, const Value& body) {
   if (body["outline"]["type"].as_string() == "polyline") return {};
   meshing::Outline outline = meshing::make_outline(

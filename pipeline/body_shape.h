@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/hdf5_file.h"
 #include "common/mesh.h"
 #include "common/value.h"
 #include "meshing/outline.h"
@@ -23,6 +24,9 @@ struct BodyShape {
 
 // The shape of a body in the world. Throws Error(geometry) or Error(usage).
 BodyShape make_body_shape(const Scene& scene, const Value& body);
+
+// How the drawn surface of a body follows its simulation mesh, from its mesh/BODY.h5.
+meshing::Skin load_skin(const Hdf5Reader& file);
 
 // The outline of a body of the plane, in the world; without loops when it is an open line.
 meshing::Outline placed_outline(const Scene& scene, const Value& body);

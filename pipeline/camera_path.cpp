@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/hdf5_file.h"
+#include "pipeline/stages/stages.h"
+
 namespace vivify::pipeline {
 
 Points camera_displacements(const Points& path, double window, bool follow_height) {
@@ -28,6 +31,27 @@ Points camera_displacements(const Points& path, double window, bool follow_heigh
   }
   if (!follow_height) displacements.col(1).setZero();
   return displacements;
+}
+
+std::vector<render::Camera> frame_cameras(const Value& scene, const std::filesystem::path& out,
+                                          int frame_count) {
+  const Value& settings = scene["camera"];
+  std::vector<render::Camera> cameras(static_cast<std::size_t>(frame_count), render::make_camera(settings));
+  if (!settings.has("follow")) return cameras;
+  const std::string& body = settings["follow"].as_string();
+  const Eigen::VectorXd mass = Hdf5Reader(out / ("mesh/" + body + ".h5")).vector("/mass");
+  Points path = Points::Zero(frame_count, 3);
+  for (int frame = 1; frame <= frame_count; ++frame) {
+    const RowMatrixXd x = Hdf5Reader(out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
+    path.row(frame - 1).head(x.cols()) = (mass.transpose() * x) / mass.sum();
+  }
+  const double window = settings["follow_smooth_s"].as_number() * scene["frames"]["fps"].as_number();
+  const Points moved = camera_displacements(path, window, settings["follow_height"].as_bool());
+  for (int i = 0; i < frame_count; ++i) {
+    cameras[static_cast<std::size_t>(i)].position += moved.row(i).transpose();
+    cameras[static_cast<std::size_t>(i)].target += moved.row(i).transpose();
+  }
+  return cameras;
 }
 
 }  // namespace vivify::pipeline

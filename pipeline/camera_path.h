@@ -1,7 +1,12 @@
 // How the camera goes with a body.
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "common/mesh.h"
+#include "common/value.h"
+#include "render/scene.h"
 
 namespace vivify::pipeline {
 
@@ -11,5 +16,10 @@ namespace vivify::pipeline {
 // continued beyond its ends by point reflection, so that steady motion is followed exactly and the first
 // displacement is zero. The height is followed only on request.
 Points camera_displacements(const Points& path, double window, bool follow_height);
+
+// The cameras of the first `frame_count` frames of a scene that was simulated in the folder `out`. Throws
+// Error(io) when frames that the camera follows are missing.
+std::vector<render::Camera> frame_cameras(const Value& scene, const std::filesystem::path& out,
+                                          int frame_count);
 
 }  // namespace vivify::pipeline

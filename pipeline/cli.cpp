@@ -118,6 +118,8 @@ class CommandLine {
     sheet.add_option("--count", sheet_.count, "Number of pictures")->check(CLI::Range(1, 10000));
     sheet.add_option("--columns", sheet_.columns, "Pictures per row")->check(CLI::Range(1, 1000));
     sheet.add_option("--width", sheet_.width, "Width of the sheet in pixels")->check(CLI::Range(1, 32768));
+    sheet.add_flag("--debug", sheet_.debug,
+                   "Draw contacts, forces, goals and rest shapes over the frames, rendered or not");
     sheet.callback([this] { command_ = [this] { return sheet_command(sheet_); }; });
 
     CLI::App& diff = add("diff", "Compare images, or folders of images");

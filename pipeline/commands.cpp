@@ -199,6 +199,7 @@ int sheet_command(const SheetCommand& command) {
   settings.columns = command.columns;
   settings.frames = command.count;
   settings.width = command.width;
+  settings.debug = command.debug;
   settings.exposure_stops = exposure_of(command.folder);
   const std::filesystem::path output = command.output.empty() ? command.folder / "sheet.png" : command.output;
   write_file_atomic(output, contact_sheet(command.folder, settings));

@@ -48,6 +48,7 @@ struct SheetCommand {
   int count = 16;
   int columns = 4;
   int width = 1280;
+  bool debug = false;
 };
 int sheet_command(const SheetCommand& command);
 

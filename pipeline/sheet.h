@@ -13,6 +13,7 @@ struct SheetSettings {
   int frames = 16;            // the first, the last and evenly spaced ones between; all when there are fewer
   int width = 1280;           // of the sheet, pixels
   double exposure_stops = 0;  // of the view transform
+  bool debug = false;         // with pipeline/debug_overlay.h over the frames, which need not be rendered
 };
 
 // The EXR files of a run folder (of its `render` folder those that its last rendering was asked for) or of a

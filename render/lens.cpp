@@ -38,6 +38,14 @@ Lens::Lens(const Camera& camera, int width, int height)
   pixel_angle_ = 2 * half_height_ / pixels_y_;
 }
 
+std::optional<Vec2> Lens::project(const Eigen::Vector3d& point) const {
+  const Vec3 way = to_float(point) - position_;
+  const float depth = dot(way, forward_);
+  if (!(depth > 0)) return std::nullopt;
+  const float x = dot(way, right_) / (depth * half_width_), y = dot(way, up_) / (depth * half_height_);
+  return Vec2{(1 + x) / 2 * pixels_x_, (1 - y) / 2 * pixels_y_};
+}
+
 Ray Lens::ray(const Vec2& pixel, const Vec2& lens) const {
   const float x = (2 * pixel.x / pixels_x_ - 1) * half_width_;
   const float y = (1 - 2 * pixel.y / pixels_y_) * half_height_;

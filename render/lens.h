@@ -1,6 +1,8 @@
 // Rays of a thin-lens camera.
 #pragma once
 
+#include <optional>
+
 #include "render/accel.h"
 #include "render/scene.h"
 
@@ -14,6 +16,9 @@ class Lens {
   // The ray through a point of the picture (pixels, from the upper left corner) and a point of the unit
   // square of the lens.
   Ray ray(const Vec2& pixel, const Vec2& lens) const;
+
+  // Where a point of the world is seen (pixels, from the upper left corner); nothing behind the lens.
+  std::optional<Vec2> project(const Eigen::Vector3d& point) const;
 
   // Angle that a pixel covers in the middle of the picture (radians).
   float pixel_angle() const { return pixel_angle_; }

@@ -11,6 +11,7 @@
 #include "sim/contact/contact_points.h"
 #include "sim/control/rigid_motion.h"
 #include "sim/elastic/models/models.h"
+#include "sim/frame_report.h"
 #include "sim/settings.h"
 #include "sim/solve/static_solve.h"
 
@@ -214,6 +215,7 @@ Body::Wish Body::wish(long step, double load, const std::optional<Eigen::Vector3
   } else if (controller_->passive()) {
     wish.q = state_.q;
   }
+  goals_ = wish.q ? std::vector<Goal>() : wish.goals;
   return wish;
 }
 
@@ -296,6 +298,8 @@ void Body::save(Hdf5Writer& file, const std::string& group) const {
   }
   file.put(group + "/restart/contact", contact);
   file.put(group + "/restart/controller", controller_->state());
+  put_contacts(file, group + "/contacts", {"point", "collider"}, contact_forces_);
+  put_goals(file, group + "/goals", goals_, model_.mass, state_.x, state_.v);
 }
 
 void Body::restore(const Hdf5Reader& file, const std::string& group) {

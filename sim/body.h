@@ -82,6 +82,8 @@ class Body {
   // To the equilibrium of the rest shape at q, turned and moved as little as can be; false when none was
   // found.
   bool settle(const Eigen::VectorXd& q, StepRecord& record);
+  // Remembers what the colliders did to the body in the step, for save().
+  void note_contacts(std::vector<ContactForce> forces) { contact_forces_ = std::move(forces); }
   // Remembers x where a solve failed; ", with triangle 17 squeezed to 0.1 % of its size at rest" there, or
   // empty when no element was.
   void note_failure(Eigen::VectorXd x) { stuck_ = std::move(x); }
@@ -92,7 +94,7 @@ class Body {
   // Writes down the rest of the step.
   void finish_record(long step, const std::vector<Collider>& colliders, StepRecord& record) const;
 
-  // State under `group`, enough for an exact restart.
+  // State under `group`, enough for an exact restart, and what sim/frame_report.h tells of the last step.
   void save(Hdf5Writer& file, const std::string& group) const;
   void restore(const Hdf5Reader& file, const std::string& group);
 
@@ -103,7 +105,9 @@ class Body {
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<SurfaceState> surface_;
   State state_;
-  Eigen::VectorXd stuck_;  // x of the last solve that failed
+  std::vector<Goal> goals_;                   // of the last step
+  std::vector<ContactForce> contact_forces_;  // at its end
+  Eigen::VectorXd stuck_;                     // x of the last solve that failed
   double wall_seconds_ = 0;
 };
 

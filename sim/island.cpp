@@ -170,6 +170,7 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
         contact.anchor_a = before->a;
         contact.anchor_b = before->b;
         contact.offset = before->offset;
+        contact.touched = true;
         contact.friction =
             Friction(friction_stiffness, a.contact.friction * b.contact.friction * before->normal_force);
       }
@@ -369,6 +370,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     state.x = x;
     state.q = q;
     contacts[m].update_memory(x, state.contacts);
+    body.note_contacts(contacts[m].forces(x));
     body.measure(*problem, m, solution.at, solution.rest, records[m]);
   });
   return true;

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/text.h"
+#include "sim/frame_report.h"
 
 namespace vivify::sim {
 namespace {
@@ -218,6 +219,7 @@ void World::save(Hdf5Writer& file) {
   for (std::size_t i = 0; i < touching_.size(); ++i)
     rows.row(static_cast<Eigen::Index>(i)) = row_of(touching_[i]);
   file.put("/touching", rows);
+  put_contacts(file, "/contacts", {"body_a", "body_b"}, contact_forces(touching_, bodies_));
 }
 
 void World::restore(const Hdf5Reader& file) {

@@ -3,6 +3,7 @@
 
 #include "common/hdf5_file.h"
 #include "meshing/skin.h"
+#include "pipeline/body_shape.h"
 #include "pipeline/camera_path.h"
 #include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
@@ -82,7 +83,6 @@ struct DrawnBody {
   render::Mesh mesh;
   meshing::Skin skin;
   RowMatrixXi elements;
-  Eigen::VectorXd mass;
 };
 
 DrawnBody load_body(const Job& job, const Value& body) {
@@ -90,10 +90,7 @@ DrawnBody load_body(const Job& job, const Value& body) {
   DrawnBody drawn;
   drawn.name = body["name"].as_string();
   drawn.elements = file.int_matrix("/elements");
-  drawn.mass = file.vector("/mass");
-  drawn.skin.embedding = {file.int_vector("/embedding/element"), file.matrix("/embedding/weights")};
-  if (file.has("/embedding/offset")) drawn.skin.offset = file.vector("/embedding/offset");
-  if (file.has("/embedding/depth")) drawn.skin.depth = file.vector("/embedding/depth");
+  drawn.skin = load_skin(file);
   drawn.mesh.name = drawn.name;
   drawn.mesh.F = file.int_matrix("/surface/F");
   if (file.has("/surface/UV")) drawn.mesh.UV = file.matrix("/surface/UV");
@@ -132,23 +129,6 @@ RowMatrixXd body_positions(const Job& job, int frame, const std::string& body) {
   return Hdf5Reader(job.out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
 }
 
-// Displacement of the camera in every frame of the scene (#frames by 3).
-Points camera_motion(const Job& job, const std::vector<DrawnBody>& bodies) {
-  const Value& camera = job.scene.settings["camera"];
-  if (!camera.has("follow")) return Points::Zero(job.scene.frame_count, 3);
-  for (const DrawnBody& body : bodies) {
-    if (body.name != camera["follow"].as_string()) continue;
-    Points path = Points::Zero(job.scene.frame_count, 3);
-    for (int frame = 1; frame <= job.scene.frame_count; ++frame) {
-      const RowMatrixXd x = body_positions(job, frame, body.name);
-      path.row(frame - 1).head(x.cols()) = (body.mass.transpose() * x) / body.mass.sum();
-    }
-    return camera_displacements(path, camera["follow_smooth_s"].as_number() * job.scene.fps,
-                                camera["follow_height"].as_bool());
-  }
-  throw Error(ErrorKind::internal, "the camera follows a body that is not there");
-}
-
 void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
   const Scene& scene = job.scene;
   render::Frame frame;
@@ -172,17 +152,14 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
 
   const render::Renderer renderer(make_looks(scene));
   const render::RenderSettings settings = render::make_settings(scene.settings["render"]);
-  const render::Camera camera = render::make_camera(scene.settings["camera"]);
-  const Points motion = camera_motion(job, bodies);
+  const std::vector<render::Camera> cameras = frame_cameras(scene.settings, job.out, scene.frame_count);
 
   auto product = missing.begin();
   for (const int number : job.frames) {
     if (product == missing.end()) break;
     if (picture_file(scene, number) != product->file) continue;
     frame.number = number;
-    frame.camera = camera;
-    frame.camera.position += motion.row(number - 1).transpose();
-    frame.camera.target += motion.row(number - 1).transpose();
+    frame.camera = cameras[static_cast<std::size_t>(number - 1)];
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       frame.meshes[i].V =
           meshing::draw(bodies[i].skin, bodies[i].elements, body_positions(job, number, bodies[i].name));

@@ -83,36 +83,10 @@ std::optional<sim::ContactSurface> load_contact_surface(const SimMesh& rest, con
   return surface;
 }
 
-sim::BodyInput load_body(const Job& job, const Value& body) {
-  const Hdf5Reader mesh(job.out / mesh_file(body)), weights(job.out / weights_file(body));
-  sim::BodyInput input;
-  input.name = body["name"].as_string();
-  input.rest = {mesh.matrix("/X0"), mesh.int_matrix("/elements")};
-  input.rest_space = body["rest_space"]["type"].as_string();
-  if (weights.has("/weights")) input.cage_weights = weights.matrix("/weights");
-  if (weights.has("/examples")) {
-    const std::vector<std::string> names = weights.texts("/examples/names");
-    const std::vector<std::string> groups = weights.texts("/examples/groups");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      input.examples.push_back(
-          {names[i], groups[i], weights.matrix("/examples/" + std::to_string(i) + "/V")});
-    }
-  }
-  input.contact_points = load_contact_points(body, input.rest, mesh);
-  input.model = body["model"];
-  input.regularizer = body["regularizer"];
-  input.contact = body["contact"];
-  input.controller = body["controller"];
-  input.solver = body["solver"];
-  input.surface = load_contact_surface(input.rest, mesh);
-  input.velocity = body["velocity"].as_vector3();
-  return input;
-}
-
 sim::World make_world(const Job& job) {
   const Scene& scene = job.scene;
   std::vector<sim::BodyInput> bodies;
-  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body));
+  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(simulated_body(job.out, body));
   std::vector<sim::Collider> colliders;
   const std::vector<Value>& items = scene.settings["colliders"].items();
   for (std::size_t i = 0; i < items.size(); ++i) {
@@ -276,6 +250,32 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
 }
 
 }  // namespace
+
+sim::BodyInput simulated_body(const std::filesystem::path& out, const Value& body) {
+  const Hdf5Reader mesh(out / mesh_file(body)), weights(out / weights_file(body));
+  sim::BodyInput input;
+  input.name = body["name"].as_string();
+  input.rest = {mesh.matrix("/X0"), mesh.int_matrix("/elements")};
+  input.rest_space = body["rest_space"]["type"].as_string();
+  if (weights.has("/weights")) input.cage_weights = weights.matrix("/weights");
+  if (weights.has("/examples")) {
+    const std::vector<std::string> names = weights.texts("/examples/names");
+    const std::vector<std::string> groups = weights.texts("/examples/groups");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      input.examples.push_back(
+          {names[i], groups[i], weights.matrix("/examples/" + std::to_string(i) + "/V")});
+    }
+  }
+  input.contact_points = load_contact_points(body, input.rest, mesh);
+  input.model = body["model"];
+  input.regularizer = body["regularizer"];
+  input.contact = body["contact"];
+  input.controller = body["controller"];
+  input.solver = body["solver"];
+  input.surface = load_contact_surface(input.rest, mesh);
+  input.velocity = body["velocity"].as_vector3();
+  return input;
+}
 
 std::string simulation_key(const Job& job) {
   const Scene& scene = job.scene;

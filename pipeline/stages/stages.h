@@ -4,6 +4,10 @@
 
 #include "pipeline/stage.h"
 
+namespace vivify::sim {
+struct BodyInput;
+}
+
 namespace vivify::pipeline {
 
 Stage mesh_stage();
@@ -23,5 +27,8 @@ std::string mesh_file(const Value& body);
 std::string weights_file(const Value& body);
 std::string simulation_file(int frame);
 std::string picture_file(const Scene& scene, int frame);
+
+// A body as it is simulated, from what the stages before made in the folder `out`.
+sim::BodyInput simulated_body(const std::filesystem::path& out, const Value& body);
 
 }  // namespace vivify::pipeline

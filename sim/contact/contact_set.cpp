@@ -58,8 +58,8 @@ ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& par
         if (!carried.isZero(0)) anchor += carried;
         if (collider.moves()) anchor = poses_[c] * anchor;
       }
-      contacts_.push_back(
-          {i, c, nearest->position, nearest->normal, anchor, Friction(parameters.friction_stiffness, limit)});
+      contacts_.push_back({i, c, touched, nearest->position, nearest->normal, anchor,
+                           Friction(parameters.friction_stiffness, limit)});
     }
   }
 }
@@ -128,6 +128,21 @@ void ContactSet::add_block_a(const Eigen::VectorXd& x, const Eigen::VectorXd& l,
   }
 }
 
+std::vector<ContactForce> ContactSet::forces(const Eigen::VectorXd& x) const {
+  std::vector<ContactForce> forces;
+  for (const Contact& contact : contacts_) {
+    const Eigen::Vector3d y = points_->position(contact.point, x);
+    const Eigen::Vector3d u = tangential(contact.normal, y - contact.anchor);
+    const Eigen::Vector3d normal = normal_force(contact, x) * contact.normal,
+                          friction = -contact.friction.gradient(u);
+    if (normal.isZero(0) && friction.isZero(0)) continue;
+    const Eigen::Vector3d kept = contact.touched ? contact.friction.return_map(u) : Eigen::Vector3d::Zero();
+    forces.push_back({contact.point, contact.collider, y, normal, friction, y - kept,
+                      contact.touched ? (u - kept).norm() : 0.0, distance(contact, x)});
+  }
+  return forces;
+}
+
 Eigen::Vector3d ContactSet::total_force(const Eigen::VectorXd& x) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Contact& contact : contacts_) {
@@ -162,7 +177,7 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
     after.normal_force = force;
     after.anchor = y;
     after.collider = contact.collider;
-    if (memory[contact.point].touching && memory[contact.point].collider == contact.collider) {
+    if (contact.touched) {
       after.anchor = y - contact.friction.return_map(tangential(contact.normal, y - contact.anchor));
     }
     // Colliders that do not move stand at the identity.

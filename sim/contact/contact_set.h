@@ -56,9 +56,21 @@ struct ContactParameters {
 struct Contact {
   int point;
   int collider;
+  bool touched;                    // at the end of the last step: the anchor is of then
   Eigen::Vector3d origin, normal;  // plane of the nearest surface point
   Eigen::Vector3d anchor;
   Friction friction;
+};
+
+// What a contact does at the end of a step, for plots and pictures.
+struct ContactForce {
+  int first, second;               // contact point and collider; between bodies: body a and body b
+  Eigen::Vector3d position;        // of the point; of the place of a that friction holds, m
+  Eigen::Vector3d normal_force;    // on the body; on a, N
+  Eigen::Vector3d friction_force;  // likewise
+  Eigen::Vector3d anchor;          // where the position would be without tension of the friction spring, m
+  double slip;                     // how far the anchor was dragged along in the step, m; 0: it sticks
+  double distance;                 // of the surfaces, m; negative where they penetrate
 };
 
 class ContactSet {
@@ -89,6 +101,8 @@ class ContactSet {
   double normal_force(const Contact& contact, const Eigen::VectorXd& x) const {
     return normal_.force(distance(contact, x));
   }
+  // Every contact with a force.
+  std::vector<ContactForce> forces(const Eigen::VectorXd& x) const;
   // Sum of the forces that the world exerts on the body, N.
   Eigen::Vector3d total_force(const Eigen::VectorXd& x) const;
 

@@ -152,6 +152,8 @@ std::vector<PairMemory> PairContacts::memory(const Eigen::VectorXd& x) const {
       after.b = contact.place_b;
       after.offset = tangential(contact.normal, contact.gap.position(x, dimension_)) - kept;
     }
+    after.friction_force = -contact.friction.gradient(slip);
+    if (contact.touched) after.slip = (slip - kept).norm();
     memory.push_back(std::move(after));
   }
   std::sort(memory.begin(), memory.end(),

@@ -49,6 +49,9 @@ struct PairMemory {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // from b to a at the end of the step
   double normal_force = 0;                           // at the end of the step, N
   double distance = 0;                               // then, m; negative where the surfaces penetrate
+  // For plots and pictures only; not kept over a restart.
+  Eigen::Vector3d friction_force = Eigen::Vector3d::Zero();  // on a, N
+  double slip = 0;  // how far the offset was dragged along in the step, m; 0: it sticks
 };
 
 struct PairContact {
@@ -62,6 +65,7 @@ struct PairContact {
   NormalForce law;
   Eigen::Vector3d offset;
   Friction friction;
+  bool touched = false;  // at the end of the last step
 };
 
 class PairContacts {

@@ -36,6 +36,25 @@ TEST(Lens, AngleOfView) {
   EXPECT_GT(lens.ray({160, 45}, {}).direction.x, 0);  // the last column is to the right
 }
 
+TEST(Lens, ProjectsWhereRaysComeFrom) {
+  Camera tilted = camera(0, 0);
+  tilted.target = {-2, 1, 0.5};
+  tilted.up = {0.2, 1, -0.1};
+  const Lens lens(tilted, 160, 90);
+  for (const Vec2 pixel : {Vec2{80, 45}, Vec2{0, 0}, Vec2{160, 90}, Vec2{12.5f, 71}}) {
+    const Ray ray = lens.ray(pixel, {});
+    for (const float distance : {0.5f, 30.0f}) {
+      const Vec3 point = ray.origin + ray.direction * distance;
+      const auto seen = lens.project({point.x, point.y, point.z});
+      ASSERT_TRUE(seen);
+      EXPECT_NEAR(seen->x, pixel.x, 1e-3f);
+      EXPECT_NEAR(seen->y, pixel.y, 1e-3f);
+    }
+    const Vec3 behind = ray.origin + ray.direction * -1.0f;
+    EXPECT_FALSE(lens.project({behind.x, behind.y, behind.z}));
+  }
+}
+
 TEST(Lens, RaysMeetInTheFocalPlane) {
   const Lens lens(camera(0.2, 4), 160, 90);
   CounterRng rng(1);
