@@ -84,6 +84,7 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
                           const RestSpaceEntry& space) {
   BodyModel body;
   body.name = input.name;
+  body.where = input.where;
   body.mesh = input.rest;
   check_mesh(body.name, body.mesh);
   const int d = body.dimension();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/error.h"
 #include "common/mesh.h"
 #include "sim/contact/contact_set.h"
 #include "sim/contact/contact_surface.h"
@@ -27,6 +28,7 @@ struct SolverSettings {
 
 struct BodyModel {
   std::string name;
+  Location where;        // its place in the scene file, for messages
   SimMesh mesh;          // at rest, as placed in the scene
   Eigen::VectorXd mass;  // #V, kg
   double height = 0;     // m

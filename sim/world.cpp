@@ -4,15 +4,13 @@
 #include <numeric>
 #include <set>
 
-#include "common/error.h"
 #include "common/parallel.h"
-#include "common/text.h"
 #include "sim/frame_report.h"
+#include "sim/start_check.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr double kResolvedDepth = 0.02;  // of the smaller body
 constexpr int kTouchingColumns = 25;
 
 Eigen::RowVectorXd row_of(const PairMemory& memory) {
@@ -45,24 +43,7 @@ World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> collide
     bodies_.push_back(std::make_unique<Body>(input, settings_));
     members_.push_back({body_count() - 1, bodies_.back().get()});
   }
-  if (!settings_.statics) require_apart();
-}
-
-// Contact pushes bodies apart that start a little inside each other; deeper ones would burst apart.
-void World::require_apart() {
-  for (const BodyPairs& between : find_near()) {
-    if (between.a == between.b) continue;
-    const BodyModel &a = bodies_[between.a]->model(), &b = bodies_[between.b]->model();
-    double depth = 0;
-    for (const SurfacePair& pair : between.pairs)
-      depth = std::max(depth, a.surface.radius + b.surface.radius - pair.distance);
-    if (depth <= kResolvedDepth * std::min(a.height, b.height)) continue;
-    throw Error(ErrorKind::geometry,
-                "bodies '" + a.name + "' and '" + b.name + "' start " + number_text(depth) +
-                    " m inside each other; contact resolves at most " +
-                    number_text(kResolvedDepth * std::min(a.height, b.height)) + " m",
-                "move one of them away by that much");
-  }
+  if (!settings_.statics) check_start(bodies_, colliders_);
 }
 
 std::vector<BodyPairs> World::find_near() {

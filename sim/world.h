@@ -14,7 +14,7 @@ namespace vivify::sim {
 
 class World {
  public:
-  // Throws Error(geometry) for bodies that cannot be simulated or that start deep inside each other.
+  // Throws Error(geometry) for bodies that cannot be simulated or that check_start() refuses.
   World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders, const WorldSettings& settings);
 
   // One step of every body; the records, in the order of the bodies, are kept until save().
@@ -40,7 +40,6 @@ class World {
  private:
   // Near places of all bodies where they are.
   std::vector<BodyPairs> find_near();
-  void require_apart();
   std::vector<Body::Wish> wishes();
   // The numbers of the bodies of each island when the bodies of a link are in one.
   using Links = std::vector<std::pair<int, int>>;

@@ -274,6 +274,7 @@ sim::BodyInput simulated_body(const std::filesystem::path& out, const Value& bod
   input.solver = body["solver"];
   input.surface = load_contact_surface(input.rest, mesh);
   input.velocity = body["velocity"].as_vector3();
+  input.where = body["position"].where();
   return input;
 }
 
