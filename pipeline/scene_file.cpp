@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "pipeline/body_settings.h"
 #include "pipeline/collider_settings.h"
+#include "pipeline/friction_settings.h"
 #include "pipeline/placement.h"
 #include "pipeline/pose_file.h"
 #include "render/lens.h"
@@ -108,6 +109,7 @@ class SemanticCheck {
     looks();
     bodies();
     colliders();
+    check_friction(scene_.settings, errors_);
     camera();
     frames();
     picture();
@@ -265,6 +267,7 @@ Schema scene_schema() {
       .field("materials", dictionary("Looks, by name.", render::material_schema()))
       .field("bodies", list("Soft characters and objects; they are simulated.", body_schema()))
       .field("colliders", list("Objects that bodies touch.", collider_schema()))
+      .field("friction", friction_schema())
       .field("props",
              list("Objects that are drawn only.", placed_schema("A fixed object that is drawn only.", true)))
       .field("camera", following_camera_schema())

@@ -111,8 +111,12 @@ BodyModel make_body_model(const BodyInput& input, const WorldSettings& settings,
   body.contact_points = input.contact_points;
   const int standing = std::max(1, count_standing_points(body.contact_points, flatten(V)));
   const double layer = input.contact["layer"].as_number() * body.height;
-  body.contact = {layer, body.weight / standing / (layer * layer), 2 * body.weight / standing / layer,
-                  input.contact["friction"].as_number(), input.contact["self"].as_bool()};
+  body.contact = {layer,
+                  body.weight / standing / (layer * layer),
+                  2 * body.weight / standing / layer,
+                  input.contact["friction"].as_number(),
+                  input.contact["self"].as_bool(),
+                  input.friction_with};
 
   body.surface = input.surface ? *input.surface : default_surface(input, layer);
 

@@ -28,7 +28,9 @@ struct BodyInput {
   std::optional<ContactSurface> surface =
       {};  // that touches other bodies; the boundary of the mesh when empty
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // at the start, m/s
-  Location where = {};                                 // of its position in the scene file, for messages
+  // Coulomb's μ with bodies and colliders by name, where it is not the product of both factors.
+  FrictionByName friction_with = {};
+  Location where = {};  // of its position in the scene file, for messages
 };
 
 struct WorldSettings {

@@ -172,7 +172,8 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
         contact.offset = before->offset;
         contact.touched = true;
         contact.friction =
-            Friction(friction_stiffness, a.contact.friction * b.contact.friction * before->normal_force);
+            Friction(friction_stiffness,
+                     a.contact.friction_against(b.name, b.contact.friction) * before->normal_force);
       }
       // Thin bodies have no inside: what touched them stays on its side.
       const auto normal = last_normals.find(identity);

@@ -17,6 +17,7 @@
 #include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
+#include "pipeline/friction_settings.h"
 #include "pipeline/run_report.h"
 #include "pipeline/stages/stages.h"
 #include "sim/contact/contact_points.h"
@@ -86,7 +87,10 @@ std::optional<sim::ContactSurface> load_contact_surface(const SimMesh& rest, con
 sim::World make_world(const Job& job) {
   const Scene& scene = job.scene;
   std::vector<sim::BodyInput> bodies;
-  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(simulated_body(job.out, body));
+  for (const Value& body : scene.settings["bodies"].items()) {
+    bodies.push_back(simulated_body(job.out, body));
+    bodies.back().friction_with = friction_of(scene.settings, bodies.back().name);
+  }
   std::vector<sim::Collider> colliders;
   const std::vector<Value>& items = scene.settings["colliders"].items();
   for (std::size_t i = 0; i < items.size(); ++i) {
@@ -284,7 +288,8 @@ std::string simulation_key(const Job& job) {
   key.add("fps", scene.fps)
       .add("steps_per_frame", scene.steps_per_frame)
       .add("gravity", scene.settings["gravity"])
-      .add("physics", scene.settings["physics"]);
+      .add("physics", scene.settings["physics"])
+      .add("friction", scene.settings["friction"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
     for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver", "velocity"}) {

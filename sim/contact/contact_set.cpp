@@ -24,13 +24,21 @@ std::optional<SurfacePoint> nearest_place(const Collider& collider, const Eigen:
 
 }  // namespace
 
+double ContactParameters::friction_against(const std::string& name, double factor) const {
+  const auto given = friction_with.find(name);
+  if (given != friction_with.end()) return given->second;
+  return friction == 0 || factor == 0 ? 0 : friction * factor;  // also of 0 · ∞
+}
+
 ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& parameters,
                        const std::vector<Collider>& colliders, const Eigen::VectorXd& x, double reach,
                        const std::vector<ContactMemory>& memory, double begin, double end, bool settled)
     : points_(&points), normal_{parameters.normal_stiffness, parameters.layer} {
   std::vector<Eigen::Isometry3d> moves;  // from the place at `x` to that at the end
+  std::vector<double> friction;          // Coulomb's μ with each collider
   for (const Collider& collider : colliders) {
     poses_.push_back(collider.pose(end));
+    friction.push_back(parameters.friction_against(collider.name(), collider.friction()));
     moves.push_back(settled ? Eigen::Isometry3d::Identity() : poses_.back() * collider.pose(begin).inverse());
   }
   for (int i = 0; i < points.size(); ++i) {
@@ -51,7 +59,7 @@ ContactSet::ContactSet(const ContactPoints& points, const ContactParameters& par
       }
       if (nearest->distance > reach + travel) continue;
       const bool touched = memory[i].touching && memory[i].collider == c;
-      const double limit = touched ? parameters.friction * collider.friction() * memory[i].normal_force : 0.0;
+      const double limit = touched ? friction[static_cast<std::size_t>(c)] * memory[i].normal_force : 0.0;
       Eigen::Vector3d anchor = memory[i].anchor;
       if (touched) {
         const Eigen::Vector3d carried = (end - begin) * collider.surface_velocity();

@@ -6,7 +6,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/mesh.h"
@@ -44,12 +46,19 @@ struct ContactMemory {
   int collider = -1;                                 // that it touched
 };
 
+// Coulomb's μ with something of that name.
+using FrictionByName = std::map<std::string, double>;
+
 struct ContactParameters {
   double layer = 0;               // δ, m
   double normal_stiffness = 0;    // N/m²
   double friction_stiffness = 0;  // N/m
   double friction = 1;            // the body's factor of Coulomb's μ: that of a pair is the product of both
   bool self = false;              // whether the body touches itself
+  FrictionByName friction_with = {};  // μ in place of the product
+
+  // Coulomb's μ with something that has a name and a factor of its own.
+  double friction_against(const std::string& name, double factor) const;
 };
 
 // One point against one plane, fixed for the step.
