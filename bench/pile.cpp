@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/bodies.h"
+#include "common/text.h"
 
 namespace vivify::bench {
 
@@ -41,7 +42,7 @@ sim::Collider bowl() {
   return sim::Collider("bowl", std::move(mesh), 0.5);
 }
 
-sim::BodyInput sphere(int i) {
+sim::BodyInput sphere(int i, double stiffness) {
   SimMesh mesh = ball(kPileRadius, 1, 1);
   // Layers of five by five, every other one shifted by half a distance.
   const int layer = i / 16, place = i % 16;
@@ -50,20 +51,20 @@ sim::BodyInput sphere(int i) {
   mesh.V.rowwise() += Eigen::RowVector3d((place % 4 - 1.5) * step + shift, 0.42 + layer * step,
                                          (place / 4 - 1.5) * step + 0.3 * shift) -
                       middle;
-  return body_input(
-      "sphere" + std::to_string(i), std::move(mesh),
-      "{type: solid3d, density: 300, stiffness: 40000, volume_stiffness: 40000, damping_s: 0.005}",
-      "{type: rest}");
+  return body_input("sphere" + std::to_string(i), std::move(mesh),
+                    "{type: solid3d, density: 300, stiffness: " + number_text(stiffness) +
+                        ", volume_stiffness: " + number_text(stiffness) + ", damping_s: 0.005}",
+                    "{type: rest}");
 }
 
-// Above the spheres.
+// Upright and side by side above the spheres.
 sim::BodyInput sheet(int i, int spheres) {
   SimMesh mesh = card(4, 5, 0.03);
   const Eigen::RowVector3d middle = 0.5 * (mesh.V.colwise().minCoeff() + mesh.V.colwise().maxCoeff());
-  mesh.V.rowwise() +=
-      Eigen::RowVector3d(0.05 * (i % 3 - 1), 0.55 + 2.3 * kPileRadius * ((spheres + 15) / 16) + 0.05 * i,
-                         0.04 * (i % 2)) -
-      middle;
+  mesh.V.rowwise() += Eigen::RowVector3d(0.05 * (i % 3 - 1),
+                                         0.55 + 2.3 * kPileRadius * ((spheres + 15) / 16) + 0.05 * (i % 2),
+                                         0.03 * i - 0.135) -
+                      middle;
   return body_input("card" + std::to_string(i), std::move(mesh),
                     "{type: shell3d, density: 1, stiffness: 3000, bending_stiffness: 0.02, thickness: "
                     "0.004, damping_s: 0.005}",
@@ -74,7 +75,7 @@ sim::BodyInput sheet(int i, int spheres) {
 
 sim::World pile_world(const Pile& pile, double h) {
   std::vector<sim::BodyInput> bodies;
-  for (int i = 0; i < pile.spheres; ++i) bodies.push_back(sphere(i));
+  for (int i = 0; i < pile.spheres; ++i) bodies.push_back(sphere(i, pile.stiffness));
   for (int i = 0; i < pile.cards; ++i) bodies.push_back(sheet(i, pile.spheres));
   for (sim::BodyInput& body : bodies) body.velocity = {0, -pile.speed, 0};
   std::vector<sim::Collider> colliders;
@@ -85,7 +86,7 @@ sim::World pile_world(const Pile& pile, double h) {
 sim::World apart_world(int spheres, double h) {
   std::vector<sim::BodyInput> bodies;
   for (int i = 0; i < spheres; ++i) {
-    sim::BodyInput body = sphere(0);
+    sim::BodyInput body = sphere(0, Pile().stiffness);
     body.name = "sphere" + std::to_string(i);
     const double bottom = body.rest.V.col(1).minCoeff();
     body.rest.V.rowwise() += Eigen::RowVector3d(i % 10, 0.01 - bottom, i / 10);

@@ -11,7 +11,8 @@ double bowl_height(double r);                // of the bowl at a distance from i
 
 struct Pile {
   int spheres = 0, cards = 0;
-  double speed = 0;  // downwards at the start, m/s
+  double speed = 0;          // downwards at the start, m/s
+  double stiffness = 40000;  // of the spheres, Pa
 };
 
 sim::World pile_world(const Pile& pile, double h);

@@ -138,6 +138,22 @@ std::size_t Island::member(int index) const {
   return static_cast<std::size_t>(found - members_.begin());
 }
 
+void Island::keep_edges(const std::vector<PairMemory>& memory, std::vector<BodyPairs>& pairs) const {
+  std::set<PairIdentity> known;
+  for (const BodyPairs& between : pairs) {
+    for (const SurfacePair& pair : between.pairs)
+      known.insert({between.a, between.b, pair.kind, pair.feature_a, pair.feature_b});
+  }
+  for (const PairMemory& entry : memory) {
+    const PairIdentity& id = entry.identity;
+    if (id.kind != SurfacePair::edge_edge || known.contains(id)) continue;
+    const std::optional<SurfacePair> kept =
+        kept_edge_pair(members_[member(id.body_a)].body->surface(), id.feature_a,
+                       members_[member(id.body_b)].body->surface(), id.feature_b, entry.normal);
+    if (kept) pairs.push_back({id.body_a, id.body_b, {*kept}});
+  }
+}
+
 PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const std::vector<PairMemory>& memory,
                                    const PairContacts* last) {
   PairContacts contacts(members_[0].body->model().dimension());
@@ -194,7 +210,9 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
 
 std::vector<BodyPairs> Island::near_members(const Eigen::VectorXd& x, double h) const {
   move_surfaces(x);
-  return near_bodies(members_, h);
+  std::vector<Eigen::VectorXd> moves;
+  for (const Member& member : members_) moves.push_back(h * member.body->v());
+  return near_bodies(members_, moves);
 }
 
 // Whether every near place that touches is a contact of `contacts` whose frozen plane describes it.
@@ -275,7 +293,7 @@ StepSolution Island::solve(const StepProblem& problem, const Eigen::VectorXd& x_
 
 bool Island::advance(double end, double h, double share, const std::vector<Body::Wish>& wishes,
                      const std::vector<Body::State>& before, const std::vector<Collider>& colliders,
-                     const std::vector<BodyPairs>& first_pairs, std::vector<PairMemory>& memory,
+                     std::vector<BodyPairs> places, std::vector<PairMemory>& memory,
                      std::vector<StepRecord>& records) {
   const std::size_t count = members_.size();
   std::vector<Eigen::VectorXd> x_n(count), starts(count);
@@ -315,7 +333,9 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   const Goals goals = joined(own_goals, x_n);
   const Eigen::VectorXd x_start = joined(x_n), start = joined(starts);
   touch_colliders(x_start, false);
-  PairContacts pairs = pair_contacts(first_pairs, memory, nullptr);
+  move_surfaces(x_start);
+  keep_edges(memory, places);
+  PairContacts pairs = pair_contacts(places, memory, nullptr);
   const bool may_touch = count > 1 || members_[0].body->model().contact.self;
 
   StepRecord shared;
@@ -333,9 +353,9 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
                                                kPlaneTolerance * members_[m].body->model().contact.layer);
     });
     bool hold = std::find(planes_hold.begin(), planes_hold.end(), false) == planes_hold.end();
-    std::vector<BodyPairs> places;
     if (may_touch) {
       places = near_members(solution.at.x, h);
+      keep_edges(memory, places);
       hold = hold && pairs_hold(places, pairs, solution.at.x);
     }
     if (hold) break;

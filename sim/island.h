@@ -32,11 +32,13 @@ class Island {
   // at its end. False when no exact step was found. Adds to the records.
   bool advance(double end, double h, double share, const std::vector<Body::Wish>& wishes,
                const std::vector<Body::State>& before, const std::vector<Collider>& colliders,
-               const std::vector<BodyPairs>& pairs, std::vector<PairMemory>& memory,
+               std::vector<BodyPairs> places, std::vector<PairMemory>& memory,
                std::vector<StepRecord>& records);
   // From the guess q, x; `x_n` are the positions before the step.
   StepSolution solve(const StepProblem& problem, const Eigen::VectorXd& x_n, const Eigen::VectorXd& q,
                      const Eigen::VectorXd& x, StepRecord& record);
+  // Adds the edges of `memory` that touch still (their surfaces are where they were moved to).
+  void keep_edges(const std::vector<PairMemory>& memory, std::vector<BodyPairs>& pairs) const;
   // Contacts between the members at the places `pairs`, bound to a pattern that holds them; `last` are those
   // of the pass before.
   PairContacts pair_contacts(const std::vector<BodyPairs>& pairs, const std::vector<PairMemory>& memory,

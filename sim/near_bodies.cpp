@@ -9,11 +9,10 @@
 namespace vivify::sim {
 namespace {
 
-constexpr double kMargin =
-    0.01;  // of the height of a body: how much farther than its velocity it is looked for
+constexpr double kMargin = 0.01;  // of the height of a body: how much farther than its move it is looked for
 constexpr double kCrossing = 1e-3;  // of their distance before: features that get so near would cross
 
-// How a body moves: its mean velocity, and how much faster than that one of its vertices is (m/s).
+// How a body moves in a step: its mean move, and how much farther than that one of its vertices moves (m).
 struct Drift {
   Eigen::Vector3d mean;
   double spread;
@@ -27,9 +26,9 @@ double longest(const Eigen::VectorXd& x, int d, const Eigen::Vector3d& from = Ei
   return length;
 }
 
-Drift drift_of(const Body& body) {
-  const Eigen::Vector3d mean = centre_of_mass(body.model().mass, body.v());
-  return {mean, longest(body.v(), body.model().dimension(), mean)};
+Drift drift_of(const Body& body, const Eigen::VectorXd& moves) {
+  const Eigen::Vector3d mean = centre_of_mass(body.model().mass, moves);
+  return {mean, longest(moves, body.model().dimension(), mean)};
 }
 
 // How far from its surface a body touches, with a margin.
@@ -57,18 +56,19 @@ std::vector<std::pair<int, int>> candidates(const std::vector<Member>& members,
 
 }  // namespace
 
-std::vector<BodyPairs> near_bodies(const std::vector<Member>& members, double h) {
+std::vector<BodyPairs> near_bodies(const std::vector<Member>& members,
+                                   const std::vector<Eigen::VectorXd>& moves) {
   std::vector<Drift> drifts;
   Eigen::Vector3d common = Eigen::Vector3d::Zero();
-  for (const Member& member : members) {
-    drifts.push_back(drift_of(*member.body));
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    drifts.push_back(drift_of(*members[m].body, moves[m]));
     common += drifts.back().mean / static_cast<double>(members.size());
   }
   std::vector<BoundingBox> boxes;
   for (std::size_t m = 0; m < members.size(); ++m) {
     BoundingBox box = members[m].body->surface().box();
     const double reach =
-        touch_reach(members[m].body->model()) + h * ((drifts[m].mean - common).norm() + drifts[m].spread);
+        touch_reach(members[m].body->model()) + (drifts[m].mean - common).norm() + drifts[m].spread;
     boxes.emplace_back(box.min().array() - reach, box.max().array() + reach);
   }
   const std::vector<std::pair<int, int>> near = candidates(members, boxes);
@@ -77,7 +77,7 @@ std::vector<BodyPairs> near_bodies(const std::vector<Member>& members, double h)
     const auto [m, n] = near[i];
     const Body &a = *members[m].body, &b = *members[n].body;
     const double closing = (drifts[m].mean - drifts[n].mean).norm() + drifts[m].spread + drifts[n].spread;
-    const double reach = touch_reach(a.model()) + touch_reach(b.model()) + h * closing;
+    const double reach = touch_reach(a.model()) + touch_reach(b.model()) + closing;
     pairs[i] = {members[m].index, members[n].index, {}};
     if (m == n) {
       pairs[i].pairs = near_self_pairs(a.surface(), reach);

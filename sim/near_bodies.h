@@ -22,10 +22,12 @@ struct BodyPairs {
   std::vector<SurfacePair> pairs;
 };
 
-// Where members are near each other, their surfaces where they were moved to: as far apart as their
-// velocities may close in a step of size h. Bodies that fly side by side are near only if they are close. In
-// the order of the numbers (the members' order is ascending); bodies of different dimensions never meet.
-std::vector<BodyPairs> near_bodies(const std::vector<Member>& members, double h);
+// Where members are near each other, their surfaces where they were moved to: as far apart as their moves in
+// a step (d #V each, m) may bring them together. Bodies that fly side by side are near only if they are
+// close. In the order of the numbers (the members' order is ascending); bodies of different dimensions never
+// meet.
+std::vector<BodyPairs> near_bodies(const std::vector<Member>& members,
+                                   const std::vector<Eigen::VectorXd>& moves);
 
 // Numbers (a <= b) of the members that would touch on straight lines from their surfaces by `moves` (d #V
 // each) although one of them is thin, among those that `wanted(a, b)` asks for: what has no inside cannot be

@@ -49,7 +49,9 @@ World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> collide
 std::vector<BodyPairs> World::find_near() {
   if (bodies_.size() == 1 && !bodies_[0]->model().contact.self) return {};
   parallel_for(bodies_.size(), [&](std::size_t b) { bodies_[b]->move_surface(bodies_[b]->x()); });
-  return near_bodies(members_, settings_.h);
+  std::vector<Eigen::VectorXd> moves;
+  for (const auto& body : bodies_) moves.push_back(settings_.h * body->v());
+  return near_bodies(members_, moves);
 }
 
 std::vector<Body::Wish> World::wishes() {
@@ -102,7 +104,7 @@ World::IslandStep World::solve(const std::vector<int>& group, const std::vector<
   return result;
 }
 
-World::Links World::met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after) {
+World::Meetings World::met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after) {
   std::vector<int> island(bodies_.size());
   for (std::size_t i = 0; i < grouping_.size(); ++i) {
     for (const int b : grouping_[i]) island[b] = static_cast<int>(i);
@@ -113,7 +115,8 @@ World::Links World::met(const std::vector<Body::State>& before, const std::vecto
     moves.push_back(bodies_[b]->x() - before[b].x);
     bodies_[b]->move_surface(before[b].x);
   }
-  Links links = crossing_bodies(members_, moves, apart);
+  Meetings meetings = {crossing_bodies(members_, moves, apart), {}};
+  Links& links = meetings.links;
   for (const BodyPairs& between : near_after) {
     if (!apart(between.a, between.b)) continue;
     const BodyModel &a = bodies_[between.a]->model(), &b = bodies_[between.b]->model();
@@ -122,7 +125,12 @@ World::Links World::met(const std::vector<Body::State>& before, const std::vecto
                     [&](const SurfacePair& pair) { return pair.distance < layer; }))
       links.emplace_back(between.a, between.b);
   }
-  return links;
+  if (links.empty()) return meetings;
+  meetings.near = near_bodies(members_, moves);
+  std::erase_if(meetings.near, [&](const BodyPairs& between) {
+    return std::find(links.begin(), links.end(), std::pair(between.a, between.b)) == links.end();
+  });
+  return meetings;
 }
 
 void World::step() {
@@ -162,14 +170,10 @@ void World::step() {
     if (settings_.statics) break;
     near_ = find_near();
     if (grouping_.size() == 1) break;
-    const Links meetings = met(before, *near_);
-    if (meetings.empty()) break;
-    for (const auto& [a, b] : meetings) links.emplace_back(a, b);
-    // What was not near before is near where the bodies met.
-    for (const BodyPairs& between : *near_) {
-      const std::pair link(between.a, between.b);
-      if (std::find(meetings.begin(), meetings.end(), link) != meetings.end()) near.push_back(between);
-    }
+    Meetings meetings = met(before, *near_);
+    if (meetings.links.empty()) break;
+    links.insert(links.end(), meetings.links.begin(), meetings.links.end());
+    std::move(meetings.near.begin(), meetings.near.end(), std::back_inserter(near));
     std::sort(near.begin(), near.end(), [](const BodyPairs& a, const BodyPairs& b) {
       return std::pair(a.a, a.b) < std::pair(b.a, b.b);
     });

@@ -51,8 +51,13 @@ class World {
   };
   IslandStep solve(const std::vector<int>& group, const std::vector<Body::Wish>& wishes,
                    const std::vector<BodyPairs>& near);
-  // Bodies of different islands that touch or have crossed at the end of the step.
-  Links met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after);
+  // Bodies of different islands that touch or have crossed at the end of the step, and where they were near
+  // at its beginning.
+  struct Meetings {
+    Links links;
+    std::vector<BodyPairs> near;
+  };
+  Meetings met(const std::vector<Body::State>& before, const std::vector<BodyPairs>& near_after);
 
   WorldSettings settings_;
   std::vector<Collider> colliders_;

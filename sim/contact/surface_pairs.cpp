@@ -13,7 +13,7 @@ namespace vivify::sim {
 namespace {
 
 constexpr double kTouching = 1e-12;      // m; below, the offset of two places has no direction
-constexpr double kConeSlack = 0.1;       // sine of the angle by which a direction may be outside a cone
+constexpr double kKeptSlack = 0.2;       // kConeSlack of a contact that was there before
 constexpr double kFlat = 0.05;           // sine of the angle by which faces turn at an edge that may touch
 constexpr double kParallel2 = 1e-8;      // squared sine of the angle below which points describe two edges
 constexpr double kCrossingDepth = 0.25;  // of the mean edge: how deep crossed edges are looked for
@@ -103,7 +103,7 @@ Eigen::Vector3d SurfaceState::point_normal(int p) const {
   return unit_or(sum, Eigen::Vector3d::Zero());
 }
 
-bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n) const {
+bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n, double slack) const {
   if (surface_->two_sided) return true;
   const int p = surface_->edges(edge, 0), q = surface_->edges(edge, 1);
   const Eigen::Vector3d along = unit_or(point(q) - point(p), Eigen::Vector3d::Zero());
@@ -115,12 +115,12 @@ bool SurfaceState::edge_cone_has(int edge, const Eigen::Vector3d& n) const {
     while (sides()(face, k) == p || sides()(face, k) == q) ++k;
     const Eigen::Vector3d side = point(sides()(face, k)) - point(p);
     const Eigen::Vector3d into = unit_or(side - along * along.dot(side), Eigen::Vector3d::Zero());
-    if (n.dot(into) > kConeSlack) return false;
+    if (n.dot(into) > slack) return false;
     descent -= n.dot(into);
     normals += side_normal(face);
   }
   const bool rim = faces.size() < 2;
-  return (rim || descent >= kFlat) && n.dot(normals) > 0;
+  return (rim || descent >= kFlat + kConeSlack - slack) && n.dot(normals) > 0;
 }
 
 template <class Allow>
@@ -214,35 +214,49 @@ void add_point_pairs(const SurfaceState& a, const SurfaceState& b, double reach,
   }
 }
 
-// The contact of two edges, if there is one down to `depth`.
-std::optional<SurfacePair> edge_pair(const SurfaceState& a, int i, const SurfaceState& b, int j, double reach,
-                                     double depth) {
+// The nearest places of two edges that are not parallel, if they are inside both: along their common normal.
+std::optional<SurfacePair> edges_across(const SurfaceState& a, int i, const SurfaceState& b, int j,
+                                        double reach) {
   const std::array<int, 3> ends_a = points_of(a.surface().edges, i), ends_b = points_of(b.surface().edges, j);
   const Eigen::Vector3d a0 = a.point(ends_a[0]), a1 = a.point(ends_a[1]);
   const Eigen::Vector3d b0 = b.point(ends_b[0]), b1 = b.point(ends_b[1]);
   const auto [s, t, offset] = nearest_on_segments(a0, a1, b0, b1);
   if (s <= 0 || s >= 1 || t <= 0 || t >= 1) return std::nullopt;
   const double length = offset.norm();
-  if (length > std::max(reach, depth)) return std::nullopt;
+  if (length > reach) return std::nullopt;
   const Eigen::Vector3d u = a1 - a0, v = b1 - b0, across = u.cross(v);
   if (across.squaredNorm() <= kParallel2 * u.squaredNorm() * v.squaredNorm()) return std::nullopt;
   const Eigen::Vector3d direction =
       length > kTouching ? Eigen::Vector3d(offset / length) : across.normalized();
-  const auto faces = [&](const Eigen::Vector3d& n) {
-    return b.edge_cone_has(j, n) && a.edge_cone_has(i, -n);
+  return SurfacePair{SurfacePair::edge_edge, i, j, ends_a, ends_b, {1 - s, s, 0}, {1 - t, t, 0}, direction,
+                     direction.dot(offset)};
+}
+
+// Whether the direction n, from b to a, is an outward normal of both edges.
+bool faces_other(const SurfaceState& a, int i, const SurfaceState& b, int j, const Eigen::Vector3d& n,
+                 double slack) {
+  return b.edge_cone_has(j, n, slack) && a.edge_cone_has(i, -n, slack);
+}
+
+// The contact of two edges, if there is one down to `depth`.
+std::optional<SurfacePair> edge_pair(const SurfaceState& a, int i, const SurfaceState& b, int j, double reach,
+                                     double depth) {
+  std::optional<SurfacePair> pair = edges_across(a, i, b, j, std::max(reach, depth));
+  if (!pair) return std::nullopt;
+  const Eigen::Vector3d direction = pair->normal;
+  const double length = pair->distance;
+  const auto faces = [&](const Eigen::Vector3d& n) { return faces_other(a, i, b, j, n, kConeSlack); };
+  const auto turned = [&] {
+    pair->normal = -direction;
+    pair->distance = -length;
   };
-  SurfacePair pair{SurfacePair::edge_edge, i,         j,     ends_a, ends_b, {1 - s, s, 0},
-                   {1 - t, t, 0},          direction, length};
-  if (length <= kTouching) {
-    if (!faces(direction)) pair.normal = -direction;
-    if (!faces(pair.normal)) return std::nullopt;
-    pair.distance = pair.normal.dot(offset);
-    return pair;
+  if (std::abs(length) <= kTouching) {
+    if (!faces(direction)) turned();
+    return faces(pair->normal) ? pair : std::nullopt;
   }
   if (length <= reach && faces(direction)) return pair;
   if (length > depth || !faces(-direction)) return std::nullopt;
-  pair.normal = -direction;
-  pair.distance = -length;
+  turned();
   return pair;
 }
 
@@ -260,6 +274,16 @@ void sort_pairs(std::vector<SurfacePair>& pairs) {
 }
 
 }  // namespace
+
+std::optional<SurfacePair> kept_edge_pair(const SurfaceState& a, int edge_a, const SurfaceState& b,
+                                          int edge_b, const Eigen::Vector3d& normal) {
+  std::optional<SurfacePair> pair = edges_across(a, edge_a, b, edge_b, INFINITY);
+  if (pair && pair->normal.dot(normal) < 0) {
+    pair->normal = -pair->normal;
+    pair->distance = -pair->distance;
+  }
+  return pair && faces_other(a, edge_a, b, edge_b, pair->normal, kKeptSlack) ? pair : std::nullopt;
+}
 
 bool boxes_near(const SurfaceState& a, const SurfaceState& b, double reach) {
   return !a.side_tree().empty() && !b.side_tree().empty() && box_distance2(a.box(), b.box()) <= reach * reach;

@@ -11,6 +11,9 @@
 
 namespace vivify::sim {
 
+// Sine of the angle by which a direction may be outside the cone of an edge's outward normals.
+inline constexpr double kConeSlack = 0.1;
+
 // Two near places y_a and y_b of the surfaces a and b (the same surface for self-contact), each a convex
 // combination of points: distance = normal · (y_a − y_b).
 struct SurfacePair {
@@ -65,8 +68,9 @@ class SurfaceState {
   Eigen::Vector3d point_normal(int point) const;
   // Whether an edge is, on the side of the unit vector n (perpendicular to it), nearer than all that
   // surrounds it: the cone of its outward normals. Shells have none: all around each edge belongs to it,
-  // because what moves over a shell may cross an edge that was not the nearest when the step began.
-  bool edge_cone_has(int edge, const Eigen::Vector3d& n) const;
+  // because what moves over a shell may cross an edge that was not the nearest when the step began. `slack`:
+  // sine of the angle by which n may be outside.
+  bool edge_cone_has(int edge, const Eigen::Vector3d& n, double slack = kConeSlack) const;
 
  private:
   friend std::vector<SurfacePair> near_self_pairs(const SurfaceState& a, double reach);
@@ -102,6 +106,12 @@ std::vector<SurfacePair> near_pairs(const SurfaceState& a, const SurfaceState& b
 // nearer than twice `reach` at rest, never touch; sides of solids touch only when they face each other, and
 // down to a depth of `reach` and a quarter of their distance at rest: what is deeper is squashed material.
 std::vector<SurfacePair> near_self_pairs(const SurfaceState& a, double reach);
+
+// Two edges that touched on the side `normal` (unit, from b towards a), wherever they are now, while their
+// nearest places are inside both. The direction between them may be a little farther outside the cones of
+// outward normals than where a contact begins: else one at the border would come and go from step to step.
+std::optional<SurfacePair> kept_edge_pair(const SurfaceState& a, int edge_a, const SurfaceState& b,
+                                          int edge_b, const Eigen::Vector3d& normal);
 
 // Whether the boxes of two surfaces are within `reach` of each other.
 bool boxes_near(const SurfaceState& a, const SurfaceState& b, double reach);

@@ -194,6 +194,47 @@ TEST(SurfacePairs, OfEdgesAreTheLocalMinimaOfTheDistance) {
   EXPECT_GT(minima, 20);
 }
 
+// A contact of edges goes on where it began, and a little beyond.
+TEST(SurfacePairs, EdgesThatTouchedAreKeptFartherThanTheyAreFound) {
+  int found = 0, kept_only = 0, dropped = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    const TwoShapes shapes(seed, -0.1 + 0.005 * seed);
+    const ContactSurface surface_a = surface_of(shapes.a.V, shapes.a.F),
+                         surface_b = surface_of(shapes.b.V, shapes.b.F);
+    const SurfaceState a(surface_a), b(surface_b);
+    const double reach = 0.15;
+    std::map<std::pair<int, int>, SurfacePair> pairs;
+    for (const SurfacePair& pair : of_kind(near_pairs(a, b, reach), SurfacePair::edge_edge))
+      pairs.emplace(std::pair(pair.feature_a, pair.feature_b), pair);
+    for (int i = 0; i < surface_a.edges.rows(); ++i) {
+      for (int j = 0; j < surface_b.edges.rows(); ++j) {
+        const auto pair = pairs.find({i, j});
+        if (pair != pairs.end()) {
+          ++found;
+          const std::optional<SurfacePair> kept = kept_edge_pair(a, i, b, j, pair->second.normal);
+          ASSERT_TRUE(kept);
+          EXPECT_LE((kept->normal - pair->second.normal).norm(), 1e-12);
+          EXPECT_NEAR(kept->distance, pair->second.distance, 1e-12);
+          EXPECT_EQ(kept->weight_a, pair->second.weight_a);
+          continue;
+        }
+        const SegmentPlaces places =
+            nearest_on_segments(a.point(surface_a.edges(i, 0)), a.point(surface_a.edges(i, 1)),
+                                b.point(surface_b.edges(j, 0)), b.point(surface_b.edges(j, 1)));
+        if (places.offset.norm() > reach || places.offset.norm() < 1e-9) continue;
+        const std::optional<SurfacePair> kept = kept_edge_pair(a, i, b, j, places.offset.normalized());
+        ++(kept ? kept_only : dropped);
+        if (kept) {
+          EXPECT_FALSE(b.edge_cone_has(j, kept->normal) && a.edge_cone_has(i, -kept->normal));
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 20);
+  EXPECT_GT(kept_only, 5);
+  EXPECT_GT(dropped, kept_only);
+}
+
 TEST(SurfacePairs, TheNearestIsTheDistanceOfTheSurfaces) {
   for (int seed = 0; seed < 20; ++seed) {
     const TwoShapes shapes(seed, 0.4);
