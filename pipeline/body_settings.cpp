@@ -7,6 +7,7 @@
 #include "meshing/harmonic.h"
 #include "meshing/outline.h"
 #include "meshing/tetrahedralize.h"
+#include "pipeline/handle_settings.h"
 #include "pipeline/placement.h"
 #include "sim/control/controller.h"
 #include "sim/elastic/models.h"
@@ -109,6 +110,7 @@ class BodyCheck {
     elements();
     if (is_planar(kind_)) plane();
     rest_space();
+    check_handles(body_, where_, is_planar(kind_), errors_);
   }
 
  private:
@@ -225,6 +227,7 @@ Schema body_schema() {
       .field("regularizer", sim::regularizer_schema())
       .field("contact", sim::contact_schema())
       .field("velocity", vector("Velocity at the start.", 3).unit("m/s").initially({0, 0, 0}))
+      .field("handles", list("What holds parts of the body, as pins or along keyframes.", handle_schema()))
       .field("controller", sim::controller_schema())
       .field("solver", sim::solver_schema());
 }

@@ -1,24 +1,11 @@
 #include "pipeline/collider_settings.h"
 
+#include "pipeline/motion_settings.h"
 #include "pipeline/placement.h"
 #include "sim/contact/shapes/shapes.h"
 
 namespace vivify::pipeline {
 namespace {
-
-Schema key_schema() {
-  return object("Where the object is at a time.")
-      .field("t_s", number("Time; 0 is the first frame.").unit("s").required())
-      .field(
-          "position",
-          vector("Where the origin of the asset is then. Left out: `position` of the object.", 3).unit("m"))
-      .field("rotation_deg",
-             vector("Turns about the x, then the y, then the z axis of the world, after `heading_deg`.", 3)
-                 .unit("deg")
-                 .initially({0, 0, 0}));
-}
-
-bool moves(const Value& collider) { return !collider["motion"].items().empty(); }
 
 // Where the asset is put in the collider's own frame.
 sim::ShapePlace own_place(const Value& collider) {
@@ -43,24 +30,18 @@ auto placed_errors(const Value& part, const Make& make) {
 }  // namespace
 
 Schema collider_schema() {
-  return placed_schema(
-             "An object that bodies touch: a `mesh` or a `shape`. It stands, or moves along keyframes, "
-             "whatever "
-             "comes in its way.",
-             false)
-      .field("shape", sim::collider_shape_schema())
-      .field("friction",
-             number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0))
-      .field(
-          "motion",
-          list("Keyframes of its motion, which goes smoothly through them without overshooting. Before the "
-               "first and after the last it rests.",
-               key_schema()))
-      .field(
-          "repeat_motion",
-          boolean("Whether the motion is repeated, with the time from the first to the last keyframe as its "
-                  "period.")
-              .initially(false))
+  Schema collider =
+      placed_schema(
+          "An object that bodies touch: a `mesh` or a `shape`. It stands, or moves along keyframes, whatever "
+          "comes in its way.",
+          false)
+          .field("shape", sim::collider_shape_schema())
+          .field("friction",
+                 number("Coulomb coefficient; inf never slips.").at_least(0).infinite().initially(1.0));
+  return add_motion(std::move(collider), "object", "position",
+                    vector("Where the origin of the asset is then. Left out: `position` of the object.", 3)
+                        .unit("m"),
+                    "Turns about the x, then the y, then the z axis of the world, after `heading_deg`.")
       .field("surface_velocity",
              vector("Velocity at which the surface carries along what stands on it, like a conveyor belt, in "
                     "the axes of the asset: it turns with the object.",
@@ -76,10 +57,7 @@ void check_collider(const Value& collider, const std::string& where, std::vector
     errors.emplace_back(ErrorKind::usage, where + " needs either `mesh` or `shape`", "",
                         mesh ? collider["shape"].where() : collider.where());
   }
-  if (collider["repeat_motion"].as_bool() && !moves(collider)) {
-    errors.emplace_back(ErrorKind::usage, where + ".repeat_motion does not fit: there is no motion",
-                        "give it keyframes, `motion`", collider["repeat_motion"].where());
-  }
+  check_motion(collider, where, errors);
 }
 
 sim::Collider make_collider(const Scene& scene, const Value& collider, const std::string& where) {
@@ -108,13 +86,7 @@ TriangleMesh collider_surface(const Scene& scene, const Value& collider) {
 }
 
 sim::RigidPath collider_path(const Value& collider, const std::string& where) {
-  std::vector<sim::RigidKey> keys;
-  for (const Value& item : collider["motion"].items()) {
-    const Value& position = item.has("position") ? item["position"] : collider["position"];
-    keys.push_back(
-        {item["t_s"].as_number(), position.as_vector3(), item["rotation_deg"].as_vector3(), item.where()});
-  }
-  return {std::move(keys), collider["repeat_motion"].as_bool(), where + ".motion"};
+  return motion_path(collider, where, "position", collider["position"].as_vector3());
 }
 
 void add_collider_geometry(ContentKey& key, const Scene& scene, const Value& collider) {

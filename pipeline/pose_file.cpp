@@ -5,17 +5,12 @@
 
 #include "common/config.h"
 #include "common/file.h"
+#include "pipeline/region_settings.h"
 
 namespace vivify::pipeline {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-Schema region_schema() {
-  return object("The part of the body that it holds: the vertices in a box.")
-      .field("min", vector("Lower corner, in shares of the bounding box of the body at rest.", 3).required())
-      .field("max", vector("Upper corner, in shares of the bounding box of the body at rest.", 3).required());
-}
 
 Schema handle_schema() {
   return object("Takes hold of a part of the body and scales it, turns it and moves it, in this order.")
@@ -27,10 +22,7 @@ Schema handle_schema() {
       .field("axis", vector("Axis of the turn, of any length. Bodies of the plane turn about z.", 3)
                          .initially({0, 1, 0}))
       .field("scale", vector("Factors along x, y and z.", 3).initially({1, 1, 1}))
-      .field("about",
-             vector("Point that stays in place when it is turned or scaled, in shares of the bounding "
-                    "box of the body at rest. Left out: the middle of the part.",
-                    3));
+      .field("about", about_schema());
 }
 
 bool moves(const Value& handle) {
@@ -52,17 +44,12 @@ void check_handle(const Value& handle, const std::string& name, std::vector<Erro
     fail(handle["scale"], ".scale must be > 0 along every axis", "");
   }
   if (handle["axis"].as_vector3().isZero(0)) fail(handle["axis"], ".axis has no length", "");
-  const Value& region = handle["region"];
-  if ((region["min"].as_vector3().array() > region["max"].as_vector3().array()).any()) {
-    fail(region, ".region is empty: min is above max", "");
-  }
+  check_region(handle, name, errors);
 }
 
-sim::Handle make_handle(const Value& item, const std::string& name) {
-  sim::Handle handle;
-  handle.name = name;
-  handle.min = item["region"]["min"].as_vector3();
-  handle.max = item["region"]["max"].as_vector3();
+sim::PoseHandle make_handle(const Value& item, const std::string& name) {
+  sim::PoseHandle handle;
+  handle.region = make_region(item, name);
   handle.move = item["move"].as_vector3();
   handle.angle = item["rotate_deg"].as_number() * kDegree;
   handle.axis = item["axis"].as_vector3();
@@ -97,7 +84,7 @@ Value load_pose(const std::filesystem::path& file, std::vector<Error>& errors) {
 sim::PoseSolution solve_pose(const Value& pose, const SimMesh& rest, const Value& model,
                              const Eigen::Vector3d& gravity) {
   const std::vector<Value>& items = pose["handles"].items();
-  std::vector<sim::Handle> handles;
+  std::vector<sim::PoseHandle> handles;
   for (std::size_t i = 0; i < items.size(); ++i) handles.push_back(make_handle(items[i], handle_name(i)));
   try {
     return sim::solve_pose(rest, model, handles,

@@ -163,7 +163,13 @@ class SemanticCheck {
   void bodies() {
     const std::vector<Value>& bodies = scene_.settings["bodies"].items();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      check_body(bodies[i], "bodies[" + std::to_string(i) + "]", errors_);
+      const std::string where = "bodies[" + std::to_string(i) + "]";
+      check_body(bodies[i], where, errors_);
+      if (!bodies[i]["handles"].items().empty() && scene_.settings["physics"].as_string() == "static") {
+        fail(bodies[i]["handles"],
+             where + ".handles does not fit: physics = static has no forces from outside",
+             "make the physics dynamic, or give poses");
+      }
       for (const Value& example : examples_of(bodies[i])) {
         const std::filesystem::path pose =
             example.has("pose") ? scene_.resolve_path(example["pose"].as_string()) : "";

@@ -154,6 +154,7 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   state_ = {rest_, Eigen::VectorXd::Zero(rest_.size()), Eigen::VectorXd::Zero(model_.rest->free_parameters()),
             std::vector<ContactMemory>(static_cast<std::size_t>(model_.contact_points.size()))};
   surface_ = std::make_unique<SurfaceState>(model_.surface);
+  handles_ = Handles(input.handles, model_.mesh.V, model_.weight / model_.height);
   const int d = model_.dimension();
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);
   const ControlledBody controlled{model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h};
@@ -286,6 +287,7 @@ void Body::measure(const StepProblem& problem, std::size_t b, const DeformedPoin
   }
   record.internal_force = force.norm();
   record.internal_torque = torque.norm();
+  record.handle_force = problem.handle_force(b, at);
   record.elastic = problem.elastic_energy(b, at, rest);
   record.min_element_ratio = problem.smallest_element(b, at);
 }

@@ -11,6 +11,7 @@
 #include "sim/body_model.h"
 #include "sim/contact/surface_pairs.h"
 #include "sim/control/controller.h"
+#include "sim/handles.h"
 #include "sim/solve/step_problem.h"
 #include "sim/step_record.h"
 
@@ -31,6 +32,7 @@ struct BodyInput {
   // Coulomb's μ with bodies and colliders by name, where it is not the product of both factors.
   FrictionByName friction_with = {};
   Location where = {};  // of its position in the scene file, for messages
+  std::vector<Handle> handles = {};
 };
 
 struct WorldSettings {
@@ -66,6 +68,7 @@ class Body {
   Eigen::VectorXd p() const { return model_.rest->basis() * state_.q; }
   const Controller& controller() const { return *controller_; }
   const SurfaceState& surface() const { return *surface_; }
+  const Handles& handles() const { return handles_; }
   double wall_seconds() const { return wall_seconds_; }  // of its steps in this process
   void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
 
@@ -107,6 +110,7 @@ class Body {
   Eigen::VectorXd rest_;  // d #V, the shape as placed in the scene
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<SurfaceState> surface_;
+  Handles handles_;
   State state_;
   std::vector<Goal> goals_;                   // of the last step
   std::vector<ContactForce> contact_forces_;  // at its end

@@ -301,6 +301,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   std::vector<Goals> own_goals(count);
   std::vector<double> reaches(count);
   std::vector<ContactSet> contacts(count);
+  std::vector<Hold> holds(count);
   const auto touch_colliders = [&](const Eigen::VectorXd& x, bool settled) {
     parallel_for(count, [&](std::size_t m) {
       const BodyModel& model = members_[m].body->model();
@@ -321,7 +322,8 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     if (wishes[m].q) own_goals[m].G.resize(0, state.x.size());
     x_n[m] = state.x;
     starts[m] = state.x + h * state.v;
-    steps[m] = {&model, &contacts[m], state.x, starts[m], state.q};
+    holds[m] = members_[m].body->handles().at(end, h);
+    steps[m] = {&model, &contacts[m], state.x, starts[m], state.q, {}, &holds[m]};
     for (Eigen::Index i = 0; i < model.mass.size(); ++i)
       steps[m].x_tilde.segment(d * i, d) += h * h * settings_.gravity.head(d);
     if (wishes[m].q) {

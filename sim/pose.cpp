@@ -21,54 +21,25 @@ constexpr double kLargestScale = 0.1;                         // in one incremen
 constexpr double kMaxIncrements = 2000;
 constexpr int kMaxHalvings = 6;            // of an increment
 constexpr double kSmallestElement = 0.01;  // of its size at rest
-constexpr double kSwelling = 0.01;      // the unit of force is what it takes to swell the body by this share
-constexpr double kTolerance = 1e-7;     // in that unit
-constexpr double kRegionMargin = 1e-9;  // of the bounding box: points on the face of a region belong to it
+constexpr double kSwelling = 0.01;   // the unit of force is what it takes to swell the body by this share
+constexpr double kTolerance = 1e-7;  // in that unit
 
 // A handle with its vertices, and its place at a share t of its way.
 class Grip {
  public:
-  Grip(const Handle& handle, const RowMatrixXd& V) : handle_(handle) {
-    const Eigen::Index d = V.cols();
-    const Eigen::RowVectorXd low = V.colwise().minCoeff(), size = V.colwise().maxCoeff() - low;
-    std::vector<bool> chosen(static_cast<std::size_t>(V.rows()), false);
-    for (const int v : handle.vertices) {
-      if (v < 0 || v >= V.rows()) {
-        throw Error(ErrorKind::usage, handle.name + " names vertex " + std::to_string(v) +
-                                          ", and the simulation mesh has " + std::to_string(V.rows()));
-      }
-      chosen[static_cast<std::size_t>(v)] = true;
-    }
-    const auto share = [&](const Eigen::Vector3d& corner, double margin) -> Eigen::RowVectorXd {
-      return low + (corner.head(d).array() + margin).matrix().transpose().cwiseProduct(size);
-    };
-    const Eigen::RowVectorXd from = share(handle.min, -kRegionMargin), to = share(handle.max, kRegionMargin);
-    for (int v = 0; v < static_cast<int>(V.rows()); ++v) {
-      const bool inside = (V.row(v).array() >= from.array()).all() && (V.row(v).array() <= to.array()).all();
-      if (inside || chosen[static_cast<std::size_t>(v)]) vertices_.push_back(v);
-    }
-    if (vertices_.empty()) {
-      throw Error(ErrorKind::usage, handle.name + " takes hold of no vertex",
-                  "make its region larger; regions are shares of the bounding box of the body");
-    }
-    if (handle.angle != 0 && d == 3 && !(handle.axis.norm() > 0)) {
-      throw Error(ErrorKind::usage, handle.name + " turns about an axis without length");
+  Grip(const PoseHandle& handle, std::vector<int> vertices, const RowMatrixXd& V)
+      : handle_(handle), vertices_(std::move(vertices)) {
+    if (handle.angle != 0 && V.cols() == 3 && !(handle.axis.norm() > 0)) {
+      throw Error(ErrorKind::usage, name() + " turns about an axis without length");
     }
     if (!(handle.scale.minCoeff() > 0)) {
-      throw Error(ErrorKind::usage, handle.name + " has a scale that is not above 0");
+      throw Error(ErrorKind::usage, name() + " has a scale that is not above 0");
     }
-    axis_ = d == 3 ? handle.axis.normalized() : Eigen::Vector3d::UnitZ();
-    Eigen::RowVectorXd about = Eigen::RowVectorXd::Zero(d);
-    if (handle.about) {
-      about = share(*handle.about, 0);
-    } else {
-      const RowMatrixXd held = V(vertices_, Eigen::all);
-      about = (held.colwise().minCoeff() + held.colwise().maxCoeff()) / 2;
-    }
-    for (Eigen::Index k = 0; k < d; ++k) about_[k] = about[k];
+    axis_ = V.cols() == 3 ? handle.axis.normalized() : Eigen::Vector3d::UnitZ();
+    about_ = handle.about ? place_in_box(V, *handle.about) : middle_of(V, vertices_);
   }
 
-  const std::string& name() const { return handle_.name; }
+  const std::string& name() const { return handle_.region.handle; }
   const std::vector<int>& vertices() const { return vertices_; }
 
   // How many increments the whole way takes.
@@ -90,9 +61,9 @@ class Grip {
   }
 
  private:
-  const Handle& handle_;
+  const PoseHandle& handle_;
   std::vector<int> vertices_;
-  Eigen::Vector3d about_ = Eigen::Vector3d::Zero(), axis_;
+  Eigen::Vector3d about_, axis_;
 };
 
 // Spreads displacements of the held vertices over the others, each of which takes the mean of its neighbours:
@@ -146,27 +117,19 @@ class Spread {
 
 class PoseSolver {
  public:
-  PoseSolver(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
+  PoseSolver(const SimMesh& rest, const Value& model, std::span<const PoseHandle> handles,
              const Eigen::Vector3d& gravity)
       : rest_(rest),
         model_(build_model(rest, RestLayout::compatible, model)),
         pattern_(static_cast<int>(rest.V.rows()), rest.dimension()),
         held_(static_cast<std::size_t>(rest.V.rows()), false) {
     const int d = rest.dimension();
-    std::vector<int> holder(held_.size(), -1);
-    for (const Handle& handle : handles) {
-      grips_.emplace_back(handle, rest.V);
-      for (const int v : grips_.back().vertices()) {
-        int& other = holder[static_cast<std::size_t>(v)];
-        if (other >= 0) {
-          throw Error(ErrorKind::usage,
-                      handles[static_cast<std::size_t>(other)].name + " and " + handle.name +
-                          " both take hold of vertex " + std::to_string(v),
-                      "make their regions smaller");
-        }
-        other = static_cast<int>(grips_.size()) - 1;
-        held_[static_cast<std::size_t>(v)] = true;
-      }
+    std::vector<Region> regions;
+    for (const PoseHandle& handle : handles) regions.push_back(handle.region);
+    std::vector<std::vector<int>> vertices = held_vertices(regions, rest.V);
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+      for (const int v : vertices[i]) held_[static_cast<std::size_t>(v)] = true;
+      grips_.emplace_back(handles[i], std::move(vertices[i]), rest.V);
     }
     if (grips_.empty()) throw Error(ErrorKind::usage, "a pose needs at least one handle");
 
@@ -296,7 +259,7 @@ class PoseSolver {
 
 }  // namespace
 
-PoseSolution solve_pose(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
+PoseSolution solve_pose(const SimMesh& rest, const Value& model, std::span<const PoseHandle> handles,
                         const Eigen::Vector3d& gravity) {
   return PoseSolver(rest, model, handles, gravity).solve();
 }

@@ -6,23 +6,18 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "common/mesh.h"
 #include "common/value.h"
+#include "sim/region.h"
 
 namespace vivify::sim {
 
 // Takes hold of some vertices and maps them by X ↦ about + R diag(scale) (X − about) + move. Without any of
 // these it is a pin. Bodies of the plane turn about z.
-struct Handle {
-  std::string name;  // for messages
-  // The region, in shares of the bounding box of the rest shape; its vertices are added to `vertices`.
-  Eigen::Vector3d min = Eigen::Vector3d::Zero();
-  Eigen::Vector3d max = -Eigen::Vector3d::Ones();  // none
-  std::vector<int> vertices;
-
+struct PoseHandle {
+  Region region;
   Eigen::Vector3d move = Eigen::Vector3d::Zero();   // m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // of the turn; need not have unit length
   double angle = 0;                                 // rad; more than a turn winds the body up
@@ -45,7 +40,7 @@ struct PoseSolution {
 // for handles that hold nothing, hold a vertex twice or turn about no axis; Error(geometry) for a mesh that
 // the model cannot take; and Error(numerical) that says how far the handles came when they cannot reach their
 // end.
-PoseSolution solve_pose(const SimMesh& rest, const Value& model, std::span<const Handle> handles,
+PoseSolution solve_pose(const SimMesh& rest, const Value& model, std::span<const PoseHandle> handles,
                         const Eigen::Vector3d& gravity = Eigen::Vector3d::Zero());
 
 }  // namespace vivify::sim

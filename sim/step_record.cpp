@@ -10,7 +10,7 @@ std::string csv_header() {
          "com_x_m,com_y_m,com_z_m,vel_x_m_s,vel_y_m_s,vel_z_m_s,internal_force_sum_n,internal_torque_sum_nm,"
          "contacts,"
          "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,guards,substeps,"
-         "phase\n";
+         "handle_force_x_n,handle_force_y_n,handle_force_z_n,phase\n";
 }
 
 std::string csv_line(const StepRecord& r) {
@@ -28,7 +28,9 @@ std::string csv_line(const StepRecord& r) {
        {r.max_penetration, r.min_clearance, r.min_element_ratio, r.kinetic, r.elastic, r.tilt_deg}) {
     add(value);
   }
-  return line + ',' + std::to_string(r.guards) + ',' + std::to_string(r.substeps) + ',' + r.phase + '\n';
+  line += ',' + std::to_string(r.guards) + ',' + std::to_string(r.substeps);
+  for (int axis = 0; axis < 3; ++axis) add(r.handle_force[axis]);
+  return line + ',' + r.phase + '\n';
 }
 
 }  // namespace vivify::sim

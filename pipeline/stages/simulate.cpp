@@ -18,6 +18,7 @@
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/friction_settings.h"
+#include "pipeline/handle_settings.h"
 #include "pipeline/run_report.h"
 #include "pipeline/stages/stages.h"
 #include "sim/contact/contact_points.h"
@@ -87,8 +88,10 @@ std::optional<sim::ContactSurface> load_contact_surface(const SimMesh& rest, con
 sim::World make_world(const Job& job) {
   const Scene& scene = job.scene;
   std::vector<sim::BodyInput> bodies;
-  for (const Value& body : scene.settings["bodies"].items()) {
-    bodies.push_back(simulated_body(job.out, body));
+  const std::vector<Value>& characters = scene.settings["bodies"].items();
+  for (std::size_t i = 0; i < characters.size(); ++i) {
+    bodies.push_back(simulated_body(job.out, characters[i]));
+    bodies.back().handles = make_handles(characters[i], "bodies[" + std::to_string(i) + "]");
     bodies.back().friction_with = friction_of(scene.settings, bodies.back().name);
   }
   std::vector<sim::Collider> colliders;
@@ -292,7 +295,8 @@ std::string simulation_key(const Job& job) {
       .add("friction", scene.settings["friction"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
-    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver", "velocity"}) {
+    for (const char* part :
+         {"name", "model", "regularizer", "contact", "controller", "solver", "velocity", "handles"}) {
       key.add(part, body[part]);
     }
   }

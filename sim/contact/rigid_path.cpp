@@ -59,7 +59,7 @@ void RigidPath::check(const std::string& name) const {
       fail(
           i,
           ".t_s = " + number_text(to.t) + " s is not after the key before it (" + number_text(from.t) + " s)",
-          duration == 0 ? "a collider cannot jump: give it time to get there"
+          duration == 0 ? "it cannot jump: give it time to get there"
                         : "put the keys in the order of time");
     }
     const double travel = (to.position - from.position).norm();
@@ -67,13 +67,13 @@ void RigidPath::check(const std::string& name) const {
       fail(
           i,
           " jumps: " + rounded(travel) + " m from the key before it, " + number_text(duration) + " s earlier",
-          "colliders move at " + number_text(kFastestTravel) + " m/s at most");
+          "motions go at " + number_text(kFastestTravel) + " m/s at most");
     }
     const double turn = (to.turns_deg - from.turns_deg).norm();
     if (!(turn <= kFastestTurn * duration)) {
       fail(i,
            " jumps: " + rounded(turn) + "° from the key before it, " + number_text(duration) + " s earlier",
-           "colliders turn by " + number_text(kFastestTurn) + "° per second at most");
+           "motions turn by " + number_text(kFastestTurn) + "° per second at most");
     }
   }
   if (!repeats_) return;

@@ -1,4 +1,4 @@
-// How a collider moves: a rigid motion through keyframes.
+// How colliders and handles move: a rigid motion through keyframes.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -203,6 +203,7 @@ double StepProblem::potential(const DeformedPoint& at, const RestPoint& rest) co
     const auto segment = [&](const Eigen::VectorXd& v) { return v.segment(x_at_[b], dofs(b)).array(); };
     double sum = 0.5 * (segment(inertia_) * (segment(at.x) - segment(x_tilde_)).square()).sum() +
                  elastic_energy(b, at, rest) + bodies_[b].contacts->energy(at.of(b));
+    if (bodies_[b].hold != nullptr) sum += bodies_[b].hold->energy(at.of(b));
     const double damping = body(b).damping / h_;
     for (std::size_t f = terms_at_[b]; f < terms_at_[b + 1] && damping > 0; ++f) {
       const MeasureFamily& family = *terms_[f].family;
@@ -225,6 +226,11 @@ Eigen::VectorXd StepProblem::internal_gradient(std::size_t b, const DeformedPoin
   return gradient;
 }
 
+Eigen::Vector3d StepProblem::handle_force(std::size_t b, const DeformedPoint& at) const {
+  if (bodies_[b].hold == nullptr) return Eigen::Vector3d::Zero();
+  return bodies_[b].hold->total_force(at.of(b));
+}
+
 Eigen::VectorXd StepProblem::residual(const DeformedPoint& at, const RestPoint& rest) const {
   Eigen::VectorXd c(at.x.size());
   each_body([&](std::size_t b) {
@@ -232,6 +238,7 @@ Eigen::VectorXd StepProblem::residual(const DeformedPoint& at, const RestPoint& 
     const auto segment = [&](const Eigen::VectorXd& v) { return v.segment(x_at_[b], dofs(b)); };
     part += segment(inertia_).cwiseProduct(at.of(b) - segment(x_tilde_));
     bodies_[b].contacts->add_gradient(at.of(b), part);
+    if (bodies_[b].hold != nullptr) bodies_[b].hold->add_gradient(at.of(b), part);
     c.segment(x_at_[b], dofs(b)) = part;
   });
   if (pairs_ != nullptr) pairs_->add_gradient(at.x, c);
@@ -245,6 +252,7 @@ void StepProblem::stiffness(const DeformedPoint& at, const RestPoint& rest, Symm
       terms_[f].family->add_hessians(at.of(b), at.g[f], stress_slope(f, at, rest), stress(f, at, rest), D);
     }
     bodies_[b].contacts->add_hessian(at.of(b), body(b).contact_slots, D);
+    if (bodies_[b].hold != nullptr) bodies_[b].hold->add_hessian(body(b).diagonal_slots, D);
   });
   if (pairs_ != nullptr) pairs_->add_hessian(at.x, D);
   add_inertia(1, D);

@@ -1,6 +1,6 @@
 // The optimisation problem (5) of one time step, as functions and their derivatives and nothing else:
-//   min over x, q of ½ |G x − s|² + r(q)   s.t.   c(x, q) = M (x − x̃)/h² + ∂W/∂x(X(q), x) + ∂U_contact/∂x =
-//   0,
+//   min over x, q of ½ |G x − s|² + r(q)
+//   s.t.  c(x, q) = M (x − x̃)/h² + ∂W/∂x(X(q), x) + ∂U_contact/∂x + ∂U_handles/∂x = 0,
 // with x̃ = x_n + h v_n + h² g⃗ (implicit Euler, equation (3)) and p = basis · q. Damping adds the potential
 // ½ (β/h) c (s(x) − s(x_n))² to every elastic term: its forces are internal, so they keep momentum.
 // Bodies in contact are one problem: x and q are those of all bodies in a row, and the contacts between them
@@ -15,6 +15,7 @@
 #include "sim/body_model.h"
 #include "sim/contact/pair_contacts.h"
 #include "sim/control/goal.h"
+#include "sim/handles.h"
 
 namespace vivify::sim {
 
@@ -45,6 +46,7 @@ struct BodyStep {
   Eigen::VectorXd x_tilde;                // x̃
   Eigen::VectorXd q_n;                    // rest parameters of the last step
   std::optional<Eigen::VectorXd> q = {};  // given rest parameters
+  const Hold* hold = nullptr;             // of its handles
 };
 
 class StepProblem {
@@ -84,6 +86,8 @@ class StepProblem {
   Eigen::VectorXd residual(const DeformedPoint& at, const RestPoint& rest) const;
   // Minus the internal forces of a body, elastic and damping, N.
   Eigen::VectorXd internal_gradient(std::size_t body, const DeformedPoint& at, const RestPoint& rest) const;
+  // Sum of the forces of a body's handles on it, N.
+  Eigen::Vector3d handle_force(std::size_t body, const DeformedPoint& at) const;
   // W of a body, J.
   double elastic_energy(std::size_t body, const DeformedPoint& at, const RestPoint& rest) const;
   // D = ∂c/∂x.

@@ -20,13 +20,9 @@ TetMesh bar() { return box_mesh({2, 6, 2}, {0.2, 0.6, 0.2}, {0, 0, 0}); }
 
 // The bar with its top turned by 120 degrees.
 RowMatrixXd twisted(const TetMesh& mesh) {
-  Handle bottom, top;
-  bottom.name = "bottom";
-  bottom.min = {0, 0, 0};
-  bottom.max = {1, 0, 1};
-  top.name = "top";
-  top.min = {0, 1, 0};
-  top.max = {1, 1, 1};
+  PoseHandle bottom, top;
+  bottom.region = {"bottom", {0, 0, 0}, {1, 0, 1}};
+  top.region = {"top", {0, 1, 0}, {1, 1, 1}};
   top.angle = 2;
   return solve_pose(sim_mesh(mesh), settings(model_schema(), "{}"), std::vector{bottom, top}).V;
 }

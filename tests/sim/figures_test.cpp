@@ -71,13 +71,9 @@ double distance(const Vector& mass, const Vector& a, const Vector& b) {
 // Figure 4: measured 0.0049 for three quarters of a turn.
 TEST(Figures, TwistedBarIsThatOfGreenStrainProjection) {
   const SimMesh mesh = sim_mesh(box_mesh({2, 10, 2}, {0.2, 1, 0.2}, {-0.1, 0, -0.1}));
-  Handle bottom, top;
-  bottom.name = "bottom";
-  bottom.min = {0, 0, 0};
-  bottom.max = {1, 0, 1};
-  top.name = "top";
-  top.min = {0, 1, 0};
-  top.max = {1, 1, 1};
+  PoseHandle bottom, top;
+  bottom.region = {"bottom", {0, 0, 0}, {1, 0, 1}};
+  top.region = {"top", {0, 1, 0}, {1, 1, 1}};
   top.angle = 0.75 * kTurn;
   const RowMatrixXd twisted = solve_pose(mesh, settings(model_schema(), "{}"), std::vector{bottom, top}).V;
   for (const std::string model : {"{type: solid3d}", "{type: solid3d_stvk}"}) {

@@ -22,18 +22,16 @@ const Eigen::Vector3d kBarSize = {0.2, 1, 0.2};
 SimMesh bar(int along = 10) { return sim_mesh(box_mesh({2, along, 2}, kBarSize, {-0.1, 0, -0.1})); }
 Value model(const std::string& yaml) { return settings(model_schema(), yaml); }
 
-Handle region(const std::string& name, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  Handle handle;
-  handle.name = name;
-  handle.min = min;
-  handle.max = max;
+PoseHandle region(const std::string& name, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  PoseHandle handle;
+  handle.region = {name, min, max};
   return handle;
 }
-Handle bottom() { return region("bottom", {0, 0, 0}, {1, 0, 1}); }
-Handle top() { return region("top", {0, 1, 0}, {1, 1, 1}); }
+PoseHandle bottom() { return region("bottom", {0, 0, 0}, {1, 0, 1}); }
+PoseHandle top() { return region("top", {0, 1, 0}, {1, 1, 1}); }
 
 // Kind and text of what a pose throws.
-Error failure(const SimMesh& mesh, const std::vector<Handle>& handles, const std::string& yaml = "{}") {
+Error failure(const SimMesh& mesh, const std::vector<PoseHandle>& handles, const std::string& yaml = "{}") {
   try {
     solve_pose(mesh, model(yaml), handles);
   } catch (const Error& error) {
@@ -45,7 +43,7 @@ Error failure(const SimMesh& mesh, const std::vector<Handle>& handles, const std
 TEST(Pose, HandlesThatMoveTogetherMoveTheBodyRigidly) {
   const SimMesh mesh = bar();
   for (const std::string type : {"{type: solid3d}", "{type: solid3d_stvk}"}) {
-    Handle turned = top();
+    PoseHandle turned = top();
     turned.angle = 0.45 * kTurn;
     turned.axis = {1, 2, -2};
     turned.move = {0.3, -0.2, 0.7};
@@ -63,10 +61,11 @@ TEST(Pose, HandlesThatMoveTogetherMoveTheBodyRigidly) {
 // Patch test: when every vertex of the boundary follows an affine map, those inside do too.
 TEST(Pose, AffineBoundaryGivesAnAffinePose) {
   const SimMesh mesh = sim_mesh(box_mesh({4, 4, 4}, {1, 1, 1}, {0, 0, 0}));
-  Handle skin;
-  skin.name = "skin";
+  PoseHandle skin;
+  skin.region.handle = "skin";
   for (int i = 0; i < mesh.V.rows(); ++i) {
-    if ((mesh.V.row(i).array() == 0).any() || (mesh.V.row(i).array() == 1).any()) skin.vertices.push_back(i);
+    if ((mesh.V.row(i).array() == 0).any() || (mesh.V.row(i).array() == 1).any())
+      skin.region.vertices.push_back(i);
   }
   skin.scale = {1.2, 0.8, 1.1};
   skin.about = {0, 0.5, 1};
@@ -86,7 +85,7 @@ class TwistTest : public testing::TestWithParam<std::tuple<std::string, double>>
 TEST_P(TwistTest, TurnsTheMiddleByHalf) {
   const auto& [type, turns] = GetParam();
   const SimMesh mesh = bar(10);
-  Handle turned = top();
+  PoseHandle turned = top();
   turned.angle = turns * kTurn;
   const PoseSolution pose = solve_pose(mesh, model(type), std::vector{bottom(), turned});
   EXPECT_GT(pose.smallest_element, 0.2);
@@ -120,9 +119,9 @@ TEST(Pose, SagsAsACantilever) {
   rod.E.resize(n, 2);
   for (int i = 0; i <= n; ++i) rod.V(i, 0) = static_cast<double>(i) / n;
   for (int i = 0; i < n; ++i) rod.E.row(i) << i, i + 1;
-  Handle wall;
-  wall.name = "wall";
-  wall.vertices = {0, 1};
+  PoseHandle wall;
+  wall.region.handle = "wall";
+  wall.region.vertices = {0, 1};
   const PoseSolution pose =
       solve_pose(rod, model("{type: rod2d, density: 1, stiffness: 10000, bending_stiffness: 100}"),
                  std::vector{wall}, {0, -10, 0});
@@ -145,7 +144,7 @@ TEST(Pose, BendsAFlatSolid) {
       sheet.E.row(e++) << v, v + nx + 2, v + nx + 1;
     }
   }
-  Handle turned = top();
+  PoseHandle turned = top();
   turned.angle = kTurn / 4;
   turned.move = {-0.5, -0.2, 0};
   for (const std::string type : {"{type: solid2d}", "{type: solid2d_printed}"}) {
@@ -179,7 +178,8 @@ TEST(Pose, BendsAShell) {
     }
   }
   const double end = 1.0 / ny, angle = kTurn / 4, arc = 1 - 2 * end, radius = arc / angle;
-  Handle lower = region("lower", {0, 0, 0}, {1, end, 1}), upper = region("upper", {0, 1 - end, 0}, {1, 1, 1});
+  PoseHandle lower = region("lower", {0, 0, 0}, {1, end, 1}),
+             upper = region("upper", {0, 1 - end, 0}, {1, 1, 1});
   upper.angle = angle;
   upper.axis = {1, 0, 0};
   upper.about = {0, 1 - end, 0};
@@ -206,17 +206,17 @@ TEST(Pose, SaysWhatIsWrongWithHandles) {
   const Error twice = failure(mesh, {bottom(), region("handles[1]", {0, 0, 0}, {0, 1, 0})});
   EXPECT_EQ(twice.kind(), ErrorKind::usage);
   EXPECT_THAT(twice.what(), HasSubstr("bottom and handles[1] both take hold of vertex 0"));
-  Handle still = top();
+  PoseHandle still = top();
   still.angle = 1;
   still.axis.setZero();
   EXPECT_THAT(failure(mesh, {still}).what(), HasSubstr("axis without length"));
-  Handle flat = top();
+  PoseHandle flat = top();
   flat.scale = {1, 0, 1};
   EXPECT_THAT(failure(mesh, {flat}).what(), HasSubstr("scale"));
-  Handle other = top();
-  other.vertices = {99};
+  PoseHandle other = top();
+  other.region.vertices = {99};
   EXPECT_THAT(failure(mesh, {other}).what(), HasSubstr("vertex 99"));
-  Handle endless = top();
+  PoseHandle endless = top();
   endless.angle = 1e5;
   EXPECT_THAT(failure(mesh, {bottom(), endless}).what(), HasSubstr("top goes too far"));
   EXPECT_EQ(failure(mesh, {}).kind(), ErrorKind::usage);
@@ -224,9 +224,9 @@ TEST(Pose, SaysWhatIsWrongWithHandles) {
 }
 
 TEST(Pose, SaysHowFarItCame) {
-  Handle pushed = top();
+  PoseHandle pushed = top();
   pushed.move = {0, -2, 0};  // through the floor that the bottom is pinned to
-  Handle sides = region("sides", {0, 0.05, 0}, {0, 0.95, 1});
+  PoseHandle sides = region("sides", {0, 0.05, 0}, {0, 0.95, 1});
   const Error error = failure(bar(), {bottom(), pushed, sides});
   EXPECT_EQ(error.kind(), ErrorKind::numerical);
   EXPECT_THAT(error.what(), HasSubstr("% of their way"));
@@ -242,8 +242,8 @@ TEST(Pose, SurvivesViolentHandles) {
       return Eigen::Vector3d(rng.uniform(from, to), rng.uniform(from, to), rng.uniform(from, to));
     };
     const SimMesh mesh = sim_mesh(box_mesh({1, 4, 1}, {0.3, 1, 0.3}, {0, 0, 0}));
-    Handle wild = top();
-    wild.min.y() = rng.uniform(0.6, 1);
+    PoseHandle wild = top();
+    wild.region.min.y() = rng.uniform(0.6, 1);
     wild.angle = rng.uniform(-0.6, 0.6) * kTurn;
     wild.axis = random(-1, 1);
     wild.move = random(-0.5, 0.5);
@@ -265,7 +265,7 @@ TEST(Pose, SurvivesViolentHandles) {
 }
 
 TEST(Pose, IsTheSameEveryTime) {
-  Handle turned = top();
+  PoseHandle turned = top();
   turned.angle = 1;
   const SimMesh mesh = bar();
   const auto pose = [&] { return solve_pose(mesh, model("{}"), std::vector{bottom(), turned}).V; };
