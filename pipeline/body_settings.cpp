@@ -227,6 +227,11 @@ Schema body_schema() {
       .field("regularizer", sim::regularizer_schema())
       .field("contact", sim::contact_schema())
       .field("velocity", vector("Velocity at the start.", 3).unit("m/s").initially({0, 0, 0}))
+      .field("spawn_s",
+             number("When the body appears, with its position and velocity. Before, it is not there.")
+                 .unit("s")
+                 .at_least(0)
+                 .initially(0.0))
       .field("handles", list("What holds parts of the body, as pins or along keyframes.", handle_schema()))
       .field("controller", sim::controller_schema())
       .field("solver", sim::solver_schema());

@@ -41,10 +41,15 @@ std::vector<render::Camera> frame_cameras(const Value& scene, const std::filesys
   const std::string& body = settings["follow"].as_string();
   const Eigen::VectorXd mass = Hdf5Reader(out / ("mesh/" + body + ".h5")).vector("/mass");
   Points path = Points::Zero(frame_count, 3);
+  int first = 0;  // frame with the body
   for (int frame = 1; frame <= frame_count; ++frame) {
-    const RowMatrixXd x = Hdf5Reader(out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
+    const Hdf5Reader state(out / simulation_file(frame));
+    if (!state.has("/bodies/" + body + "/x")) continue;
+    const RowMatrixXd x = state.matrix("/bodies/" + body + "/x");
     path.row(frame - 1).head(x.cols()) = (mass.transpose() * x) / mass.sum();
+    if (first == 0) first = frame;
   }
+  for (int frame = 1; frame < first; ++frame) path.row(frame - 1) = path.row(first - 1);
   const double window = settings["follow_smooth_s"].as_number() * scene["frames"]["fps"].as_number();
   const Points moved = camera_displacements(path, window, settings["follow_height"].as_bool());
   for (int i = 0; i < frame_count; ++i) {

@@ -17,7 +17,8 @@ namespace vivify::pipeline {
 // displacement is zero. The height is followed only on request.
 Points camera_displacements(const Points& path, double window, bool follow_height);
 
-// The cameras of the first `frame_count` frames of a scene that was simulated in the folder `out`. Throws
+// The cameras of the first `frame_count` frames of a scene that was simulated in the folder `out`. For a body
+// that appears later they wait where it will be. Throws
 // Error(io) when frames that the camera follows are missing.
 std::vector<render::Camera> frame_cameras(const Value& scene, const std::filesystem::path& out,
                                           int frame_count);

@@ -177,6 +177,7 @@ struct DebugOverlay::Scene {
   void draw_shapes(View& view, bool has_picture) {
     for (Drawn& drawn : bodies) {
       sim::Body& body = *drawn.body;
+      if (!view.state.has(group_of(body) + "/x")) continue;  // it has not appeared yet
       body.restore(view.state, group_of(body));
       const RowMatrixXi& E = body.model().mesh.E;
       if (!has_picture)

@@ -1,5 +1,6 @@
 #include "pipeline/handle_settings.h"
 
+#include "common/text.h"
 #include "pipeline/motion_settings.h"
 #include "pipeline/region_settings.h"
 
@@ -14,17 +15,23 @@ sim::RigidPath handle_path(const Value& handle, const std::string& where) {
 
 class HandleCheck {
  public:
-  HandleCheck(const Value& handle, std::string where, std::vector<Error>& errors)
-      : handle_(handle), where_(std::move(where)), errors_(errors) {}
+  HandleCheck(const Value& handle, std::string where, double spawn, std::vector<Error>& errors)
+      : handle_(handle), where_(std::move(where)), spawn_(spawn), errors_(errors) {}
 
   void run(bool planar) {
     const std::size_t before = errors_.size();
     check_region(handle_, where_, errors_);
     check_motion(handle_, where_, errors_);
     if (planar) plane();
+    if (handle_.has("until_s") && !(handle_["until_s"].as_number() > spawn_)) {
+      fail(handle_["until_s"],
+           ".until_s = " + number_text(handle_["until_s"].as_number()) +
+               " s is not after the body appears, at " + number_text(spawn_) + " s",
+           "let go later");
+    }
     if (errors_.size() > before) return;
     try {
-      start(handle_path(handle_, where_).pose(0));
+      start(handle_path(handle_, where_).pose(spawn_));
     } catch (const Error& error) {
       errors_.push_back(error);
     }
@@ -50,15 +57,16 @@ class HandleCheck {
     }
   }
 
-  // The body is not torn to somewhere else at the beginning.
+  // The body is not torn to somewhere else when it appears.
   void start(const Eigen::Isometry3d& pose) {
     if (pose.translation().norm() <= kSamePlace && pose.linear().isIdentity(kSamePlace)) return;
     fail(handle_["motion"], ".motion does not begin where the body is",
-         "at 0 s let `move` and `rotation_deg` be 0");
+         "at " + number_text(spawn_) + " s let `move` and `rotation_deg` be 0");
   }
 
   const Value& handle_;
   std::string where_;
+  double spawn_;  // when the body appears, s
   std::vector<Error>& errors_;
 };
 
@@ -79,13 +87,13 @@ Schema handle_schema() {
                     vector("How far it is from where it was at first.", 3).unit("m").initially({0, 0, 0}),
                     "Turns about the x, then the y, then the z axis of the world. Bodies of the plane turn "
                     "about z only.")
-      .field("until_s", number("When it lets go. Left out: never.").unit("s").above(0));
+      .field("until_s", number("When it lets go. Left out: never.").unit("s"));
 }
 
 void check_handles(const Value& body, const std::string& where, bool planar, std::vector<Error>& errors) {
   const std::vector<Value>& handles = body["handles"].items();
   for (std::size_t i = 0; i < handles.size(); ++i) {
-    HandleCheck(handles[i], name_of(where, i), errors).run(planar);
+    HandleCheck(handles[i], name_of(where, i), body["spawn_s"].as_number(), errors).run(planar);
   }
 }
 

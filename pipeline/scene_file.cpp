@@ -291,6 +291,13 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
     for (const std::string& text : sim::model_warnings(bodies[i]["model"])) {
       warnings.push_back({bodies[i]["model"].where(), "bodies[" + std::to_string(i) + "]." + text});
     }
+    const double spawn = bodies[i]["spawn_s"].as_number(), last = (scene.frame_count - 1.0) / scene.fps;
+    if (spawn > last) {
+      warnings.push_back(
+          {bodies[i]["spawn_s"].where(), "bodies[" + std::to_string(i) + "].spawn_s = " + number_text(spawn) +
+                                             " s is after the last frame, at " + number_text(last) +
+                                             " s: the body never appears"});
+    }
     const Value& heading = bodies[i]["controller"]["heading_deg"];
     if (!is_planar(body_kind(bodies[i])) || heading.is_null()) continue;
     const double along_x = std::sin(heading.as_number() * std::numbers::pi / 180);

@@ -21,6 +21,7 @@ namespace {
 constexpr double kLeastGravity = 1;        // m/s²; the weight is the unit of force even where there is none
 constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
 constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
+constexpr double kTimeTolerance = 1e-6;    // of a step: a time that is meant is hit in spite of rounding
 constexpr double kSqueezed = 0.1;          // of its size at rest: what a message calls a squeezed element
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {
@@ -154,6 +155,7 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   state_ = {rest_, Eigen::VectorXd::Zero(rest_.size()), Eigen::VectorXd::Zero(model_.rest->free_parameters()),
             std::vector<ContactMemory>(static_cast<std::size_t>(model_.contact_points.size()))};
   surface_ = std::make_unique<SurfaceState>(model_.surface);
+  spawn_step_ = std::lround(std::ceil(input.spawn / settings.h - kTimeTolerance));
   handles_ = Handles(input.handles, model_.mesh.V, model_.weight / model_.height);
   const int d = model_.dimension();
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);

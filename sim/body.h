@@ -33,6 +33,7 @@ struct BodyInput {
   FrictionByName friction_with = {};
   Location where = {};  // of its position in the scene file, for messages
   std::vector<Handle> handles = {};
+  double spawn = 0;  // when it appears in the world, s
 };
 
 struct WorldSettings {
@@ -69,6 +70,7 @@ class Body {
   const Controller& controller() const { return *controller_; }
   const SurfaceState& surface() const { return *surface_; }
   const Handles& handles() const { return handles_; }
+  long spawn_step() const { return spawn_step_; }        // steps of the world before it appears
   double wall_seconds() const { return wall_seconds_; }  // of its steps in this process
   void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
 
@@ -112,6 +114,7 @@ class Body {
   std::unique_ptr<SurfaceState> surface_;
   Handles handles_;
   State state_;
+  long spawn_step_;
   std::vector<Goal> goals_;                   // of the last step
   std::vector<ContactForce> contact_forces_;  // at its end
   Eigen::VectorXd stuck_;                     // x of the last solve that failed

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/error.h"
+#include "common/text.h"
 
 namespace vivify::sim {
 namespace {
@@ -33,9 +34,10 @@ struct Depth {
 };
 
 Depth depth_in_colliders(const ContactPoints& points, const Body& body,
-                         const std::vector<Collider>& colliders) {
+                         const std::vector<Collider>& colliders, double time) {
   const std::vector<ContactMemory> untouched(static_cast<std::size_t>(points.size()));
-  const ContactSet contacts(points, body.model().contact, colliders, body.x(), 0, untouched);
+  const ContactSet contacts(points, body.model().contact, colliders, body.x(), 0, untouched, time, time,
+                            true);
   Depth deepest;
   for (const Contact& contact : contacts.contacts()) {
     const double depth = -contacts.distance(contact, body.x());
@@ -44,15 +46,21 @@ Depth depth_in_colliders(const ContactPoints& points, const Body& body,
   return deepest;
 }
 
-void check_colliders(const Body& body, const std::vector<Collider>& colliders) {
+// "starts ", or of several "start "; later "appears at 2 s, ".
+std::string starts(double time, bool several = false) {
+  if (time == 0) return several ? "start " : "starts ";
+  return (several ? "are, when one appears at " : "appears at ") + number_text(time) + " s, ";
+}
+
+void check_colliders(const Body& body, const std::vector<Collider>& colliders, double time) {
   const BodyModel& model = body.model();
-  Depth deepest = depth_in_colliders(model.contact_points, body, colliders);
-  const Depth inside = depth_in_colliders(element_centres(model.mesh), body, colliders);
+  Depth deepest = depth_in_colliders(model.contact_points, body, colliders, time);
+  const Depth inside = depth_in_colliders(element_centres(model.mesh), body, colliders, time);
   if (inside.depth > deepest.depth) deepest = inside;
   const double resolved = kResolvedDepth * model.height;
   if (deepest.depth <= resolved) return;
   throw Error(ErrorKind::geometry,
-              "body '" + model.name + "' starts " + metres(deepest.depth) + " inside collider '" +
+              "body '" + model.name + "' " + starts(time) + metres(deepest.depth) + " inside collider '" +
                   colliders[static_cast<std::size_t>(deepest.collider)].name() +
                   "'; contact resolves at most " + metres(resolved),
               "move it out of the collider", model.where);
@@ -121,9 +129,9 @@ bool crosses(const SurfaceState& a, const SurfaceState& b) {
   return found;
 }
 
-void check_pair(const Body& body_a, const Body& body_b) {
+void check_pair(const Body& body_a, const Body& body_b, double time) {
   const BodyModel &a = body_a.model(), &b = body_b.model();
-  const std::string names = "bodies '" + a.name + "' and '" + b.name + "' start ";
+  const std::string names = "bodies '" + a.name + "' and '" + b.name + "' " + starts(time, true);
   double depth = std::max(depth_inside(body_a, body_b), depth_inside(body_b, body_a));
   const double touching = a.surface.radius + b.surface.radius;
   for (const SurfacePair& pair : near_pairs(body_a.surface(), body_b.surface(), touching))
@@ -144,18 +152,23 @@ void check_pair(const Body& body_a, const Body& body_b) {
 
 }  // namespace
 
-void check_start(const std::vector<std::unique_ptr<Body>>& bodies, const std::vector<Collider>& colliders) {
+void check_start(const std::vector<Member>& members, const std::vector<Collider>& colliders, long step,
+                 double time) {
+  const auto arrives = [&](int m) { return members[static_cast<std::size_t>(m)].body->spawn_step() == step; };
   std::vector<BoundingBox> boxes;
-  for (const auto& body : bodies) {
-    check_colliders(*body, colliders);
-    body->move_surface(body->x());
-    const Eigen::Vector3d radius = Eigen::Vector3d::Constant(body->model().surface.radius);
-    const BoundingBox box = body->surface().box();
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    Body& body = *members[m].body;
+    if (arrives(static_cast<int>(m))) check_colliders(body, colliders, time);
+    body.move_surface(body.x());
+    const Eigen::Vector3d radius = Eigen::Vector3d::Constant(body.model().surface.radius);
+    const BoundingBox box = body.surface().box();
     boxes.emplace_back(box.min() - radius, box.max() + radius);
   }
   for (const auto& [a, b] : near_boxes(boxes, 0)) {
-    const Body &body_a = *bodies[static_cast<std::size_t>(a)], &body_b = *bodies[static_cast<std::size_t>(b)];
-    if (body_a.model().dimension() == body_b.model().dimension()) check_pair(body_a, body_b);
+    if (!arrives(a) && !arrives(b)) continue;
+    const Body &body_a = *members[static_cast<std::size_t>(a)].body,
+               &body_b = *members[static_cast<std::size_t>(b)].body;
+    if (body_a.model().dimension() == body_b.model().dimension()) check_pair(body_a, body_b, time);
   }
 }
 

@@ -39,18 +39,31 @@ PairMemory memory_of(const Eigen::RowVectorXd& row) {
 World::World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders,
              const WorldSettings& settings)
     : settings_(settings), colliders_(std::move(colliders)) {
-  for (const BodyInput& input : bodies) {
-    bodies_.push_back(std::make_unique<Body>(input, settings_));
-    members_.push_back({body_count() - 1, bodies_.back().get()});
+  for (const BodyInput& input : bodies) bodies_.push_back(std::make_unique<Body>(input, settings_));
+  admit();
+}
+
+void World::list_members() {
+  members_.clear();
+  for (int b = 0; b < body_count(); ++b) {
+    if (present(b)) members_.push_back({b, bodies_[b].get()});
   }
-  if (!settings_.statics) check_start(bodies_, colliders_);
+}
+
+void World::admit() {
+  const std::size_t before = members_.size();
+  list_members();
+  if (members_.size() == before || settings_.statics) return;
+  check_start(members_, colliders_, steps_, time());
+  near_.reset();
 }
 
 std::vector<BodyPairs> World::find_near() {
   if (bodies_.size() == 1 && !bodies_[0]->model().contact.self) return {};
-  parallel_for(bodies_.size(), [&](std::size_t b) { bodies_[b]->move_surface(bodies_[b]->x()); });
+  parallel_for(members_.size(),
+               [&](std::size_t m) { members_[m].body->move_surface(members_[m].body->x()); });
   std::vector<Eigen::VectorXd> moves;
-  for (const auto& body : bodies_) moves.push_back(settings_.h * body->v());
+  for (const Member& member : members_) moves.push_back(settings_.h * member.body->v());
   return near_bodies(members_, moves);
 }
 
@@ -62,9 +75,9 @@ std::vector<Body::Wish> World::wishes() {
   }
   std::vector<Body::Wish> wishes(bodies_.size());
   const double end = time(), begin = end - settings_.h;
-  parallel_for(bodies_.size(), [&](std::size_t b) {
-    wishes[b] = bodies_[b]->wish(steps_, loads[b],
-                                 ground_velocity(bodies_[b]->state().contacts, colliders_, begin, end));
+  parallel_for(members_.size(), [&](std::size_t m) {
+    const auto [b, body] = members_[m];
+    wishes[b] = body->wish(steps_, loads[b], ground_velocity(body->state().contacts, colliders_, begin, end));
   });
   return wishes;
 }
@@ -81,7 +94,7 @@ std::vector<std::vector<int>> World::groups_of(const Links& links) const {
     first[high] = low;
   }
   std::map<int, std::vector<int>> groups;
-  for (int b = 0; b < body_count(); ++b) groups[root(b)].push_back(b);
+  for (const Member& member : members_) groups[root(member.index)].push_back(member.index);
   std::vector<std::vector<int>> list;
   for (auto& [low, group] : groups) list.push_back(std::move(group));
   return list;
@@ -111,9 +124,9 @@ World::Meetings World::met(const std::vector<Body::State>& before, const std::ve
   }
   const auto apart = [&](int a, int b) { return island[a] != island[b]; };
   std::vector<Eigen::VectorXd> moves;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    moves.push_back(bodies_[b]->x() - before[b].x);
-    bodies_[b]->move_surface(before[b].x);
+  for (const auto& [b, body] : members_) {
+    moves.push_back(body->x() - before[b].x);
+    body->move_surface(before[b].x);
   }
   Meetings meetings = {crossing_bodies(members_, moves, apart), {}};
   Links& links = meetings.links;
@@ -157,7 +170,7 @@ void World::step() {
       open.push_back(&group);
       std::vector<Member> members;
       for (const int b : group) {
-        members.push_back(members_[b]);
+        members.push_back({b, bodies_[b].get()});
         bodies_[b]->state() = before[b];
       }
       if (!islands_.contains(group))
@@ -180,14 +193,15 @@ void World::step() {
   }
 
   touching_.clear();
-  std::vector<StepRecord> in_order(bodies_.size());
+  std::map<int, StepRecord> in_order;
   for (auto& [group, result] : solved) {
     touching_.insert(touching_.end(), result.touching.begin(), result.touching.end());
     for (std::size_t m = 0; m < group.size(); ++m) in_order[group[m]] = std::move(result.records[m]);
   }
   std::sort(touching_.begin(), touching_.end(),
             [](const PairMemory& a, const PairMemory& b) { return a.identity < b.identity; });
-  std::move(in_order.begin(), in_order.end(), std::back_inserter(records_));
+  for (auto& [b, record] : in_order) records_.push_back(std::move(record));
+  admit();
 }
 
 void World::save(Hdf5Writer& file) {
@@ -198,7 +212,7 @@ void World::save(Hdf5Writer& file) {
   for (const StepRecord& record : records_) lines += csv_line(record);
   file.put("/steps", lines);
   records_.clear();
-  for (const auto& body : bodies_) body->save(file, "/bodies/" + body->model().name);
+  for (const auto& [b, body] : members_) body->save(file, "/bodies/" + body->model().name);
   if (touching_.empty()) return;
   RowMatrixXd rows(static_cast<Eigen::Index>(touching_.size()), kTouchingColumns);
   for (std::size_t i = 0; i < touching_.size(); ++i)
@@ -212,7 +226,8 @@ void World::restore(const Hdf5Reader& file) {
   records_.clear();
   touching_.clear();
   near_.reset();
-  for (const auto& body : bodies_) body->restore(file, "/bodies/" + body->model().name);
+  list_members();
+  for (const auto& [b, body] : members_) body->restore(file, "/bodies/" + body->model().name);
   if (!file.has("/touching")) return;
   const RowMatrixXd rows = file.matrix("/touching");
   for (Eigen::Index i = 0; i < rows.rows(); ++i) touching_.push_back(memory_of(rows.row(i)));

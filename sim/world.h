@@ -17,12 +17,16 @@ class World {
   // Throws Error(geometry) for bodies that cannot be simulated or that check_start() refuses.
   World(const std::vector<BodyInput>& bodies, std::vector<Collider> colliders, const WorldSettings& settings);
 
-  // One step of every body; the records, in the order of the bodies, are kept until save().
+  // One step of every body that has appeared; the records, in the order of the bodies, are kept until save().
+  // Throws Error(numerical) when it cannot be solved, and Error(geometry) when check_start() refuses a body
+  // that appears after it.
   void step();
   long steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * settings_.h; }
   int body_count() const { return static_cast<int>(bodies_.size()); }
   const Body& body(int i) const { return *bodies_[static_cast<std::size_t>(i)]; }
+  // Whether a body has appeared. Before, it is not simulated, recorded or saved.
+  bool present(int i) const { return steps_ >= body(i).spawn_step(); }
   // The bodies of each island of the last step.
   const std::vector<std::vector<int>>& islands() const { return grouping_; }
   // What touched at the end of the last step, sorted by identity.
@@ -38,6 +42,10 @@ class World {
   void restore(const Hdf5Reader& file);
 
  private:
+  // Finds the bodies that are present.
+  void list_members();
+  // Lets in the bodies whose time has come.
+  void admit();
   // Near places of all bodies where they are.
   std::vector<BodyPairs> find_near();
   std::vector<Body::Wish> wishes();
@@ -62,7 +70,7 @@ class World {
   WorldSettings settings_;
   std::vector<Collider> colliders_;
   std::vector<std::unique_ptr<Body>> bodies_;
-  std::vector<Member> members_;
+  std::vector<Member> members_;  // that are present
   std::vector<std::vector<int>> grouping_;
   // Those of the last step, and every body alone.
   std::map<std::vector<int>, std::unique_ptr<Island>> islands_;

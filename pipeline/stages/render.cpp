@@ -1,6 +1,8 @@
 // render: one multi-layer EXR per frame.
 #include "render/render.h"
 
+#include <optional>
+
 #include "common/hdf5_file.h"
 #include "meshing/skin.h"
 #include "pipeline/body_shape.h"
@@ -124,19 +126,19 @@ struct MovingObject {
   }
 };
 
-// Positions of the vertices of a body's simulation mesh (#V by 2 or 3).
-RowMatrixXd body_positions(const Job& job, int frame, const std::string& body) {
-  return Hdf5Reader(job.out / simulation_file(frame)).matrix("/bodies/" + body + "/x");
+// Positions of the vertices of a body's simulation mesh (#V by 2 or 3); none before it appears.
+std::optional<RowMatrixXd> body_positions(const Job& job, int frame, const std::string& body) {
+  const Hdf5Reader state(job.out / simulation_file(frame));
+  const std::string x = "/bodies/" + body + "/x";
+  return state.has(x) ? std::optional(state.matrix(x)) : std::nullopt;
 }
 
 void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
   const Scene& scene = job.scene;
   render::Frame frame;
   std::vector<DrawnBody> bodies;
-  for (const Value& body : scene.settings["bodies"].items()) {
-    bodies.push_back(load_body(job, body));
-    frame.meshes.push_back(bodies.back().mesh);
-  }
+  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body));
+  frame.meshes.resize(bodies.size());
   std::vector<MovingObject> moving;
   for (const Value& collider : drawn_objects(scene, "colliders")) {
     frame.meshes.push_back(drawn_mesh(collider, collider_surface(scene, collider)));
@@ -148,7 +150,10 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
   for (const Value& prop : drawn_objects(scene, "props")) {
     frame.meshes.push_back(drawn_mesh(prop, read_placed_mesh(scene, prop)));
   }
-  for (std::size_t i = 0; i < frame.meshes.size(); ++i) frame.meshes[i].object_id = static_cast<int>(i) + 1;
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
+    render::Mesh& mesh = i < bodies.size() ? bodies[i].mesh : frame.meshes[i];
+    mesh.object_id = static_cast<int>(i) + 1;
+  }
 
   const render::Renderer renderer(make_looks(scene));
   const render::RenderSettings settings = render::make_settings(scene.settings["render"]);
@@ -161,8 +166,9 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
     frame.number = number;
     frame.camera = cameras[static_cast<std::size_t>(number - 1)];
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      frame.meshes[i].V =
-          meshing::draw(bodies[i].skin, bodies[i].elements, body_positions(job, number, bodies[i].name));
+      const std::optional<RowMatrixXd> x = body_positions(job, number, bodies[i].name);
+      frame.meshes[i] = x ? bodies[i].mesh : render::Mesh();
+      if (x) frame.meshes[i].V = meshing::draw(bodies[i].skin, bodies[i].elements, *x);
     }
     for (const MovingObject& object : moving) {
       frame.meshes[object.mesh].V = object.at(static_cast<double>(number - 1) / scene.fps);

@@ -91,6 +91,7 @@ sim::World make_world(const Job& job) {
   const std::vector<Value>& characters = scene.settings["bodies"].items();
   for (std::size_t i = 0; i < characters.size(); ++i) {
     bodies.push_back(simulated_body(job.out, characters[i]));
+    bodies.back().spawn = characters[i]["spawn_s"].as_number();
     bodies.back().handles = make_handles(characters[i], "bodies[" + std::to_string(i) + "]");
     bodies.back().friction_with = friction_of(scene.settings, bodies.back().name);
   }
@@ -179,14 +180,15 @@ std::string summarize(const Job& job, const std::string& csv) {
   summary["bodies"] = nlohmann::ordered_json::object();
   for (const Value& body : job.scene.settings["bodies"].items()) {
     const std::string& name = body["name"].as_string();
-    const Hdf5Reader start(job.out / simulation_file(1));
+    const Hdf5Reader last(job.out / simulation_file(job.simulate_to));
+    if (!last.has("/bodies/" + name + "/x")) continue;  // it has not appeared yet
     const std::vector<double> iterations = steps.column("sqp_iterations", name);
     const std::vector<double> fallback = steps.column("fallback", name);
     summary["bodies"][name] = {
         {"model", body["model"]["type"].as_string()},
         {"space", body["rest_space"]["type"].as_string()},
-        {"dofs", start.matrix("/bodies/" + name + "/x").size()},
-        {"params", start.vector("/bodies/" + name + "/p").size()},
+        {"dofs", last.matrix("/bodies/" + name + "/x").size()},
+        {"params", last.vector("/bodies/" + name + "/p").size()},
         {"steps", iterations.size()},
         {"sqp_iterations_mean", mean(iterations)},
         {"sqp_iterations_p95", percentile(iterations, 0.95)},
@@ -227,6 +229,7 @@ void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, P
           world->step();
         }
         for (int i = 0; i < world->body_count(); ++i) {
+          if (!world->present(i)) continue;
           timing[world->body(i).model().name].sim_seconds +=
               job.scene.time_step() * job.scene.steps_per_frame;
         }
@@ -295,8 +298,8 @@ std::string simulation_key(const Job& job) {
       .add("friction", scene.settings["friction"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
-    for (const char* part :
-         {"name", "model", "regularizer", "contact", "controller", "solver", "velocity", "handles"}) {
+    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver", "velocity",
+                             "handles", "spawn_s"}) {
       key.add(part, body[part]);
     }
   }

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                     {":7:75:", "bodies[0].handles[0].repeat_motion does not fit: there is no motion"}},
         WrongHandle{"let_go_too_early",
                     "{TOP, until_s: -1}",
-                    {":7:69:", "bodies[0].handles[0].until_s = -1 s must be > 0"}}),
+                    {":7:69:", "bodies[0].handles[0].until_s = -1 s is not after the body appears, at 0 s"}}),
     [](const auto& parameter) { return parameter.param.name; });
 
 TEST(Handles, OfThePlaneStayInIt) {
