@@ -192,7 +192,9 @@ TEST(StartInside, ALittleIsPushedApart) {
       fastest = std::max(fastest, state.matrix(std::string("/bodies/") + body + "/v").cwiseAbs().maxCoeff());
     if (frame < 6) continue;
     for (const char* contacts : {"/contacts/distance", "/bodies/one/contacts/distance"}) {
-      if (state.has(contacts)) EXPECT_GT(state.vector(contacts).minCoeff(), -0.002) << contacts;
+      if (state.has(contacts)) {
+        EXPECT_GT(state.vector(contacts).minCoeff(), -0.002) << contacts;
+      }
     }
   }
   EXPECT_LT(fastest, 3);
