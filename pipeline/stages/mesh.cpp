@@ -21,11 +21,17 @@ std::vector<Product> products(const Job& job) {
 }
 
 // The surface with which a solid touches other bodies; rods and shells touch with themselves.
-void put_contact_surface(const Value& body, const BodyShape& shape, Hdf5Writer& file) {
-  if (shape.closed.V.rows() == 0 || body_kind(body) != BodyKind::solid) return;
+void put_contact_surface(const Scene& scene, const Value& body, const BodyShape& shape, Hdf5Writer& file) {
+  const BodyKind kind = body_kind(body);
   const auto points = static_cast<int>(body["contact"]["points"].as_integer());
-  const meshing::CoarseSurface coarse =
-      meshing::coarse_contact_surface(shape.closed, {shape.mesh.V, shape.mesh.E}, points);
+  meshing::CoarseSurface coarse;
+  if (kind == BodyKind::flat) {
+    coarse = meshing::coarse_contact_outline(placed_outline(scene, body), shape.mesh.V, shape.mesh.E, points);
+  } else if (kind == BodyKind::solid && shape.closed.V.rows() > 0) {
+    coarse = meshing::coarse_contact_surface(shape.closed, {shape.mesh.V, shape.mesh.E}, points);
+  } else {
+    return;
+  }
   file.put("/contact/V", coarse.V);
   file.put("/contact/F", coarse.F);
   file.put("/contact/element", coarse.embedding.element);
@@ -55,7 +61,7 @@ Bytes make_body(const Scene& scene, const Value& body) {
     file.put("/repaired/F", RowMatrixXi(shape.closed.F));
     file.put("/repaired/route", shape.route);
   }
-  put_contact_surface(body, shape, file);
+  put_contact_surface(scene, body, shape, file);
   if (!shape.notes.empty()) file.put("/notes", shape.notes);
   return file.image();
 }

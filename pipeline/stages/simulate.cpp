@@ -77,9 +77,15 @@ sim::ContactPoints load_contact_points(const Value& body, const SimMesh& rest, c
 std::optional<sim::ContactSurface> load_contact_surface(const SimMesh& rest, const Hdf5Reader& mesh) {
   if (!mesh.has("/contact")) return std::nullopt;
   sim::ContactSurface surface;
-  surface.rest = mesh.matrix("/contact/V");
-  surface.faces = mesh.int_matrix("/contact/F");
-  surface.edges = sim::edges_of(surface.faces);
+  const RowMatrixXd V = mesh.matrix("/contact/V");
+  surface.rest = Points::Zero(V.rows(), 3);
+  surface.rest.leftCols(V.cols()) = V;
+  if (V.cols() == 2) {
+    surface.edges = mesh.int_matrix("/contact/F");
+  } else {
+    surface.faces = mesh.int_matrix("/contact/F");
+    surface.edges = sim::edges_of(surface.faces);
+  }
   surface.points =
       embedded_points(rest, mesh.int_vector("/contact/element"), mesh.matrix("/contact/weights"));
   return surface;

@@ -247,6 +247,43 @@ INSTANTIATE_TEST_SUITE_P(
              1}),
     [](const auto& parameter) { return parameter.param.name; });
 
+// A polygon of 60 corners on a circle of radius 0.4 m about (x, 0.5).
+std::string circle(double x) {
+  std::string points;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 2 * M_PI * i / 60;
+    points += (i > 0 ? ", [" : "[") + number_text(x + 0.4 * std::cos(angle)) + ", " +
+              number_text(0.5 + 0.4 * std::sin(angle)) + "]";
+  }
+  return "outline: {type: polygon, points: [" + points + "]}";
+}
+
+// Flat bodies touch one another with the outlines that are drawn, not with the few corners of their meshes.
+TEST(FlatBodies, TouchWithTheirDrawnOutlines) {
+  const std::string about =
+      "triangles: {vertices: 20}\n    model: {type: solid2d, stiffness: 100000}\n    velocity: ";
+  const BodyScene scene(
+      {circle(-0.45), about + "[3, 0, 0]\n  - name: other", circle(0.45), about + "[-3, 0, 0]"});
+  const Outcome outcome = scene.run("simulate", scene.out());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Hdf5Reader mesh(scene.out() / "mesh/body.h5");
+  EXPECT_LT(mesh.matrix("/X0").rows(), 40);
+  const RowMatrixXd V = mesh.matrix("/contact/V");
+  const RowMatrixXi edges = mesh.int_matrix("/contact/F");
+  ASSERT_GE(V.rows(), 60);
+  double area = 0;
+  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+    const Eigen::RowVector2d a = V.row(edges(e, 0)), b = V.row(edges(e, 1));
+    area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
+  EXPECT_NEAR(area, 0.5 * 60 * 0.16 * std::sin(2 * M_PI / 60), 1e-9) << "counter-clockwise";
+  // They have met, 0.1 m apart at first.
+  bool met = false;
+  for (const std::string frame : {"0002", "0003", "0004"})
+    met |= Hdf5Reader(scene.out() / ("sim/frames/" + frame + ".h5")).has("/touching");
+  EXPECT_TRUE(met);
+}
+
 class DrawnBodyTest : public testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
 
 // The body is really in the picture, and its depth moves the picture only.
