@@ -29,6 +29,9 @@ class Steps {
   double operator()(const std::string& name, std::size_t row) const {
     return std::stod(columns_.at(name).at(row));
   }
+  const std::string& text(const std::string& name, std::size_t row) const {
+    return columns_.at(name).at(row);
+  }
   double largest(const std::string& name) const {
     double value = -INFINITY;
     for (std::size_t i = 0; i < size(); ++i) value = std::max(value, (*this)(name, i));

@@ -1,0 +1,86 @@
+// Scenes with several bodies as they are shipped: the cups use contact, and every body obeys its equations of
+// motion while they do.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "tests/common/temporary_folder.h"
+#include "tests/pipeline/program.h"
+#include "tests/pipeline/simulated_run.h"
+
+namespace vivify::pipeline {
+namespace {
+
+using testing_support::Steps;
+
+constexpr double kCupHeight = 0.9;  // m
+
+// A simulated scene of configs/, and the rows of steps.csv of each body.
+class SceneRun {
+ public:
+  explicit SceneRun(const std::string& scene) {
+    const testing_support::Outcome outcome =
+        testing_support::vivify({"simulate", VIVIFY_SOURCE_DIR "/configs/" + scene, "-o",
+                                 (folder_ / "out").string(), "--progress=none", "-q"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    steps_.emplace(folder_ / "out/sim/steps.csv");
+    for (std::size_t i = 0; i < steps_->size(); ++i) rows_[steps_->text("body", i)].push_back(i);
+  }
+  const Steps& steps() const { return *steps_; }
+  double at(const std::string& body, const std::string& column, double share) const {
+    const std::vector<std::size_t>& rows = rows_.at(body);
+    return (*steps_)(column, rows[static_cast<std::size_t>(share * static_cast<double>(rows.size() - 1))]);
+  }
+  double least(const std::string& body, const std::string& column) const {
+    double value = INFINITY;
+    for (const std::size_t row : rows_.at(body)) value = std::min(value, (*steps_)(column, row));
+    return value;
+  }
+  double most(const std::string& body, const std::string& column) const {
+    double value = -INFINITY;
+    for (const std::size_t row : rows_.at(body)) value = std::max(value, (*steps_)(column, row));
+    return value;
+  }
+
+ private:
+  testing_support::TemporaryFolder folder_;
+  std::optional<Steps> steps_;
+  std::map<std::string, std::vector<std::size_t>> rows_;
+};
+
+TEST(CompanyScenes, ACupHopsOverSoftObstacles) {
+  const SceneRun run("obstacles.yaml");
+  EXPECT_LE(run.steps().largest("residual_rel"), 1e-8);
+  EXPECT_GT(run.at("cup", "com_x_m", 0) - run.at("cup", "com_x_m", 1), 2);
+  EXPECT_LE(run.most("cup", "tilt_deg"), 45);
+  EXPECT_LE(run.most("cup", "max_penetration_m"), 0.01 * kCupHeight);
+  int trodden_on = 0;
+  for (const std::string ball : {"ball1", "ball2", "ball3"}) {
+    trodden_on += run.least(ball, "min_element_ratio") < 0.8;
+    EXPECT_GT(run.least(ball, "min_element_ratio"), 0) << "no element turned inside out";
+    EXPECT_NEAR(run.at(ball, "com_y_m", 1), 0.06, 0.005) << "it lies on the table again";
+  }
+  EXPECT_GE(trodden_on, 2);
+}
+
+TEST(CompanyScenes, TwoCupsShoveEachOther) {
+  const SceneRun run("shove.yaml");
+  EXPECT_LE(run.steps().largest("residual_rel"), 1e-8);
+  double nearest = INFINITY;
+  for (double share = 0; share <= 1; share += 0.01) {
+    const double way = run.at("right", "com_x_m", share) - run.at("left", "com_x_m", share);
+    EXPECT_GT(way, 0) << "neither passes through the other";
+    nearest = std::min(nearest, way);
+  }
+  EXPECT_LT(nearest, 1) << "they met";
+  for (const std::string cup : {"left", "right"}) {
+    EXPECT_LE(run.most(cup, "tilt_deg"), 45);
+    EXPECT_LE(run.most(cup, "max_penetration_m"), 0.01 * kCupHeight);
+    EXPECT_LE(run.most(cup, "internal_force_sum_n"), 1e-9 * 100);
+  }
+}
+
+}  // namespace
+}  // namespace vivify::pipeline
