@@ -272,8 +272,6 @@ RandomScene random_scene(std::uint64_t seed) {
           block({0.3 * height, 0, 0}, {0.4 * height, 0.6 * height, height}, friction()));
     }
   }
-  text << ", " << scene.colliders.size() << " colliders";
-
   // The body stands or lies somewhere above the plane.
   const double drop = dice.chance(0.3) ? 0 : dice.uniform(0, 0.3 * height);
   double lowest = INFINITY;
@@ -282,6 +280,24 @@ RandomScene random_scene(std::uint64_t seed) {
     lowest = std::min(lowest, normal.dot(point));
   }
   for (int axis = 0; axis < d; ++axis) mesh.V.col(axis).array() += (drop - lowest) * normal[axis];
+  // What starts inside a collider is refused.
+  std::erase_if(scene.colliders, [&](const Collider& collider) {
+    double distance = INFINITY;
+    const auto look = [&](const Eigen::Vector3d& point) {
+      distance = std::min(distance, collider.nearest(point).distance);
+    };
+    const Vector x = flat(mesh.V);
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) look(spatial_point(x, i, d));
+    for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (Eigen::Index k = 0; k < mesh.E.cols(); ++k) sum += spatial_point(x, mesh.E(e, k), d);
+      look(sum / static_cast<double>(mesh.E.cols()));
+    }
+    const ContactPoints within = inner_contacts(mesh, 1, seed);
+    for (int i = 0; i < within.size(); ++i) look(within.position(i, x));
+    return distance < -1e-9 * height;
+  });
+  text << ", " << scene.colliders.size() << " colliders";
 
   // It starts twisted, squeezed, inverted, shaken, and with the speed of a fall.
   const Vector rest = flat(mesh.V);
