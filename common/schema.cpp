@@ -240,7 +240,8 @@ class Resolver {
       if (option != nullptr && !any_required(option->fields))
         value = resolve_variant(schema, empty_map(where), path);
     } else if (schema.kind == Schema::Kind::list && schema.default_value.is_null()) {
-      value = Value::list({});
+      // What must have items is not there at all: an empty list could not be read back.
+      if (schema.min_items == 0) value = Value::list({});
     } else if (schema.kind == Schema::Kind::dictionary) {
       value = Value::map();
     } else if (schema.kind != Schema::Kind::variant) {

@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "common/hdf5_file.h"
 #include "meshing/skin.h"
+#include "pipeline/body_settings.h"
 #include "pipeline/body_shape.h"
 #include "pipeline/camera_path.h"
 #include "pipeline/scene_file.h"
@@ -101,9 +102,9 @@ class Outline {
   std::map<std::pair<int, int>, std::vector<int>> edges_;  // and the faces on both sides
 };
 
-// Solids are outlined with the coarse surface that touches other bodies, others as they are drawn.
-Outline load_outline(const Hdf5Reader& mesh) {
-  if (!mesh.has("/contact"))
+// Solids of space are outlined with the coarse surface that touches other bodies, others as they are drawn.
+Outline load_outline(const Hdf5Reader& mesh, const Value& body) {
+  if (body_kind(body) != BodyKind::solid || !mesh.has("/contact"))
     return {load_skin(mesh), mesh.matrix("/surface/V"), mesh.int_matrix("/surface/F")};
   meshing::Skin skin;
   skin.embedding = {mesh.int_vector("/contact/element"), mesh.matrix("/contact/weights")};
@@ -163,7 +164,7 @@ struct DebugOverlay::Scene {
     for (const Value& body : settings["bodies"].items()) {
       bodies.push_back({std::make_unique<sim::Body>(simulated_body(folder, body),
                                                     sim::WorldSettings{settings["gravity"].as_vector3(), h}),
-                        load_outline(Hdf5Reader(folder / mesh_file(body)))});
+                        load_outline(Hdf5Reader(folder / mesh_file(body)), body)});
     }
     cameras = frame_cameras(settings, folder, frames);
   }

@@ -115,6 +115,18 @@ TEST_F(DebugSheet, ShowsGoalsForcesAndRestShapesOverPictures) {
                          debug.values.begin()));
 }
 
+// Flat bodies touch with a closed line, which has no sides to outline: the drawn surface has.
+TEST_F(DebugSheet, OutlinesFlatBodiesAsTheyAreDrawn) {
+  scene_.change("mesh: ball.obj",
+                "outline: {type: polygon, points: [[-0.4, 0], [0.4, 0], [0.4, 0.6], [-0.4, 0.6]]}");
+  scene_.change("tetrahedra: {backend: tetgen, vertices: 60}", "triangles: {vertices: 30}");
+  scene_.change("type: solid3d", "type: solid2d");
+  ASSERT_EQ(run("simulate", {"--frames", "1-3"}).code, 0);
+  const Outcome outcome = sheet({"--debug", "--count", "1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GE(count(picture(), kRestShape), 400);
+}
+
 TEST_F(DebugSheet, NeedsARunThatWasSimulated) {
   ASSERT_EQ(run("mesh").code, 0);
   const Outcome outcome = sheet({"--debug"});
