@@ -21,7 +21,6 @@ namespace {
 constexpr double kLeastGravity = 1;        // m/s²; the weight is the unit of force even where there is none
 constexpr double kStaticTolerance = 1e-9;  // of the weight: force on a vertex that is left in equilibrium
 constexpr int kStaticStart = 16;           // increments of the parameters to the first keyframe
-constexpr double kTimeTolerance = 1e-6;    // of a step: a time that is meant is hit in spite of rounding
 constexpr double kSqueezed = 0.1;          // of its size at rest: what a message calls a squeezed element
 
 RowMatrixXd unflatten(const Eigen::VectorXd& x, int d) {

@@ -3,8 +3,7 @@
 namespace vivify::sim {
 namespace {
 
-constexpr double kSag = 1e-5;            // of its height: how far a body that hangs from one handle sags
-constexpr double kTimeTolerance = 1e-6;  // of a step: a time that is meant is hit in spite of rounding
+constexpr double kSag = 1e-5;  // of its height: how far a body that hangs from one handle sags
 
 }  // namespace
 

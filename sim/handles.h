@@ -15,6 +15,9 @@
 
 namespace vivify::sim {
 
+// Of a step: a time that is meant is hit in spite of rounding.
+inline constexpr double kTimeTolerance = 1e-6;
+
 // At the time t the vertices with the rest places X are held at about + R(t) (X − about) + u(t), where the
 // pose of the motion turns by R and moves by u. Without motion it is a pin.
 struct Handle {

@@ -239,6 +239,7 @@ bool Island::pairs_hold(const std::vector<BodyPairs>& pairs, const PairContacts&
 }
 
 bool Island::passes_through(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
+  if (!has_thin(members_)) return false;
   std::vector<Eigen::VectorXd> moves;
   for (std::size_t m = 0; m < members_.size(); ++m) moves.push_back(part(to - from, m));
   move_surfaces(from);
@@ -335,8 +336,10 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
   const Goals goals = joined(own_goals, x_n);
   const Eigen::VectorXd x_start = joined(x_n), start = joined(starts);
   touch_colliders(x_start, false);
-  move_surfaces(x_start);
-  keep_edges(memory, places);
+  if (!memory.empty()) {
+    move_surfaces(x_start);
+    keep_edges(memory, places);
+  }
   PairContacts pairs = pair_contacts(places, memory, nullptr);
   const bool may_touch = count > 1 || members_[0].body->model().contact.self;
 

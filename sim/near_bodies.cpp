@@ -89,14 +89,16 @@ std::vector<BodyPairs> near_bodies(const std::vector<Member>& members,
   return pairs;
 }
 
+bool has_thin(const std::vector<Member>& members) {
+  return std::any_of(members.begin(), members.end(),
+                     [](const Member& member) { return member.body->model().surface.two_sided; });
+}
+
 std::vector<std::pair<int, int>> crossing_bodies(const std::vector<Member>& members,
                                                  const std::vector<Eigen::VectorXd>& moves,
                                                  const std::function<bool(int, int)>& wanted) {
   const auto thin = [&](int m) { return members[m].body->model().surface.two_sided; };
   std::vector<std::pair<int, int>> crossing;
-  bool any = false;
-  for (int m = 0; m < static_cast<int>(members.size()); ++m) any = any || thin(m);
-  if (!any) return crossing;
   std::vector<BoundingBox> boxes;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const BoundingBox box = members[m].body->surface().box();

@@ -29,9 +29,11 @@ struct BodyPairs {
 std::vector<BodyPairs> near_bodies(const std::vector<Member>& members,
                                    const std::vector<Eigen::VectorXd>& moves);
 
+// Whether a member is thin: what has no inside cannot be pushed back out.
+bool has_thin(const std::vector<Member>& members);
+
 // Numbers (a <= b) of the members that would touch on straight lines from their surfaces by `moves` (d #V
-// each) although one of them is thin, among those that `wanted(a, b)` asks for: what has no inside cannot be
-// pushed back out.
+// each) although one of them is thin, among those that `wanted(a, b)` asks for.
 std::vector<std::pair<int, int>> crossing_bodies(const std::vector<Member>& members,
                                                  const std::vector<Eigen::VectorXd>& moves,
                                                  const std::function<bool(int, int)>& wanted);

@@ -123,12 +123,7 @@ World::Meetings World::met(const std::vector<Body::State>& before, const std::ve
     for (const int b : grouping_[i]) island[b] = static_cast<int>(i);
   }
   const auto apart = [&](int a, int b) { return island[a] != island[b]; };
-  std::vector<Eigen::VectorXd> moves;
-  for (const auto& [b, body] : members_) {
-    moves.push_back(body->x() - before[b].x);
-    body->move_surface(before[b].x);
-  }
-  Meetings meetings = {crossing_bodies(members_, moves, apart), {}};
+  Meetings meetings;
   Links& links = meetings.links;
   for (const BodyPairs& between : near_after) {
     if (!apart(between.a, between.b)) continue;
@@ -138,6 +133,15 @@ World::Meetings World::met(const std::vector<Body::State>& before, const std::ve
                     [&](const SurfacePair& pair) { return pair.distance < layer; }))
       links.emplace_back(between.a, between.b);
   }
+  if (links.empty() && !has_thin(members_)) return meetings;
+
+  std::vector<Eigen::VectorXd> moves;
+  for (const auto& [b, body] : members_) {
+    moves.push_back(body->x() - before[b].x);
+    body->move_surface(before[b].x);
+  }
+  const Links crossing = crossing_bodies(members_, moves, apart);
+  links.insert(links.end(), crossing.begin(), crossing.end());
   if (links.empty()) return meetings;
   meetings.near = near_bodies(members_, moves);
   std::erase_if(meetings.near, [&](const BodyPairs& between) {
@@ -168,13 +172,11 @@ void World::step() {
     for (const std::vector<int>& group : grouping_) {
       if (solved.contains(group)) continue;
       open.push_back(&group);
+      for (const int b : group) bodies_[b]->state() = before[b];
+      if (islands_.contains(group)) continue;
       std::vector<Member> members;
-      for (const int b : group) {
-        members.push_back({b, bodies_[b].get()});
-        bodies_[b]->state() = before[b];
-      }
-      if (!islands_.contains(group))
-        islands_.emplace(group, std::make_unique<Island>(std::move(members), settings_));
+      for (const int b : group) members.push_back({b, bodies_[b].get()});
+      islands_.emplace(group, std::make_unique<Island>(std::move(members), settings_));
     }
     std::vector<IslandStep> results(open.size());
     parallel_for(open.size(), [&](std::size_t i) { results[i] = solve(*open[i], wanted, near); });

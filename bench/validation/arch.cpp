@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,8 +9,6 @@ namespace vivify::validation {
 namespace {
 
 constexpr double kInner = 0.85, kOuter = 1.15;  // m
-constexpr double kSettled = 1;                  // s: from then on nothing may move
-constexpr double kSeconds = 6;
 
 // Voussoir `index` of `count` of a half circle on y = 0, of 2 by 2 cells.
 SimMesh voussoir(int index, int count) {
@@ -25,13 +22,6 @@ SimMesh voussoir(int index, int count) {
   return mesh;
 }
 
-struct Standing {
-  double drift = 0;  // of a centre, from kSettled on, m
-  double sunk = 0;   // of the keystone since the start, m
-  double penetration = 0;
-  Curve keystone;  // sinking over time, mm
-};
-
 Standing stand(int count, double friction, double h) {
   std::vector<sim::BodyInput> bodies;
   for (int i = 0; i < count; ++i) {
@@ -41,22 +31,7 @@ Standing stand(int count, double friction, double h) {
         "stone" + std::to_string(i)));
   }
   sim::World world(bodies, inclined_plane(friction), {{0, -kGravity, 0}, h});
-  std::vector<Eigen::Vector3d> settled(static_cast<std::size_t>(count));
-  const int key = count / 2;
-  const double start = centre(world, key).y();
-  Standing standing;
-  while (world.time() < kSeconds - 0.5 * h) {
-    world.step();
-    for (int b = 0; b < count; ++b) {
-      Eigen::Vector3d& from = settled[static_cast<std::size_t>(b)];
-      if (world.time() < kSettled + 0.5 * h) from = centre(world, b);
-      standing.drift = std::max(standing.drift, (centre(world, b) - from).norm());
-      standing.penetration = std::max(standing.penetration, record(world, b).max_penetration);
-    }
-    standing.sunk = start - centre(world, key).y();
-    standing.keystone.add(world.time(), 1e3 * standing.sunk);
-  }
-  return standing;
+  return watch_standing(world, h, count / 2);
 }
 
 }  // namespace
@@ -77,14 +52,16 @@ Result arch(Effort effort) {
   Table table{"The keystone sinks while the joints close and the stones are squeezed.",
               {"stones", "sunk (mm)", "deepest penetration (mm)"}};
   for (const int count : counts) {
-    Standing standing = stand(count, 1, 0.01);
+    const Standing standing = stand(count, 1, 0.01);
     result.figure(std::to_string(count) + " stones: largest motion of a centre in 5 s, m", standing.drift, 0,
                   1e-3);
     result.figure(std::to_string(count) + " stones: sinking of the keystone, m", standing.sunk, 0, 0.02);
     table.rows.push_back(
         {std::to_string(count), short_number(1e3 * standing.sunk), short_number(1e3 * standing.penetration)});
-    standing.keystone.name = std::to_string(count) + " stones";
-    plot.curves.push_back(std::move(standing.keystone));
+    Curve keystone{std::to_string(count) + " stones"};
+    for (std::size_t i = 0; i < standing.height.x.size(); ++i)
+      keystone.add(standing.height.x[i], 1e3 * (standing.start - standing.height.y[i]));
+    plot.curves.push_back(std::move(keystone));
   }
   result.plots.push_back(std::move(plot));
   result.tables.push_back(std::move(table));

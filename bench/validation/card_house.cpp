@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +9,6 @@ namespace {
 
 constexpr double kLength = 0.2, kWidth = 0.14, kThickness = 0.004;  // of a card, m
 constexpr double kLean = 20;                                        // ° from the vertical
-constexpr double kSettled = 1, kSeconds = 6;                        // s
 
 // A card whose middle line runs from `from` to `to` (x, y), of cells across z.
 SimMesh card(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
@@ -62,12 +60,6 @@ std::vector<SimMesh> house(int storeys) {
   return cards;
 }
 
-struct Standing {
-  double drift = 0;  // of a centre from kSettled on, m
-  double sunk = 0;   // of the highest card since the start, m
-  Curve height;      // of its centre, over time
-};
-
 Standing stand(int storeys, double h) {
   std::vector<sim::BodyInput> bodies;
   for (const SimMesh& mesh : house(storeys)) {
@@ -78,21 +70,7 @@ Standing stand(int storeys, double h) {
                       "card" + std::to_string(bodies.size())));
   }
   sim::World world(bodies, inclined_plane(1), {{0, -kGravity, 0}, h});
-  const int count = world.body_count(), top = count - 1;
-  std::vector<Eigen::Vector3d> settled(static_cast<std::size_t>(count));
-  const double start = centre(world, top).y();
-  Standing standing;
-  while (world.time() < kSeconds - 0.5 * h) {
-    world.step();
-    for (int b = 0; b < count; ++b) {
-      Eigen::Vector3d& from = settled[static_cast<std::size_t>(b)];
-      if (world.time() < kSettled + 0.5 * h) from = centre(world, b);
-      standing.drift = std::max(standing.drift, (centre(world, b) - from).norm());
-    }
-    standing.sunk = start - centre(world, top).y();
-    standing.height.add(world.time(), centre(world, top).y());
-  }
-  return standing;
+  return watch_standing(world, h, world.body_count() - 1);
 }
 
 }  // namespace

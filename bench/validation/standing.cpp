@@ -1,5 +1,6 @@
 #include "bench/validation/standing.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "bench/validation/lattice.h"
@@ -72,6 +73,26 @@ double mass(const World& world, int b) { return world.body(b).model().mass.sum()
 
 const StepRecord& record(const World& world, int b) {
   return world.records()[world.records().size() - static_cast<std::size_t>(world.body_count() - b)];
+}
+
+Standing watch_standing(World& world, double h, int key) {
+  constexpr double kSettled = 1, kSeconds = 6;
+  const int count = world.body_count();
+  std::vector<Eigen::Vector3d> settled(static_cast<std::size_t>(count));
+  Standing standing;
+  standing.start = centre(world, key).y();
+  while (world.time() < kSeconds - 0.5 * h) {
+    world.step();
+    for (int b = 0; b < count; ++b) {
+      Eigen::Vector3d& from = settled[static_cast<std::size_t>(b)];
+      if (world.time() < kSettled + 0.5 * h) from = centre(world, b);
+      standing.drift = std::max(standing.drift, (centre(world, b) - from).norm());
+      standing.penetration = std::max(standing.penetration, record(world, b).max_penetration);
+    }
+    standing.height.add(world.time(), centre(world, key).y());
+  }
+  standing.sunk = standing.start - centre(world, key).y();
+  return standing;
 }
 
 }  // namespace vivify::validation

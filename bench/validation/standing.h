@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/validation/bodies.h"
+#include "bench/validation/problem.h"
 #include "sim/world.h"
 
 namespace vivify::validation {
@@ -31,5 +32,16 @@ Eigen::Vector3d velocity(const sim::World& world, int b = 0);
 double mass(const sim::World& world, int b = 0);
 // The record of body b in the last step.
 const sim::StepRecord& record(const sim::World& world, int b = 0);
+
+// How well bodies stand.
+struct Standing {
+  double drift = 0;        // largest motion of a centre once they have settled, m
+  double penetration = 0;  // deepest, m
+  double start = 0;        // height of the centre of body `key` at the start, m
+  double sunk = 0;         // that it lost, m
+  Curve height;            // that it has, m over s
+};
+// Steps the world for six seconds, of which the first is for settling.
+Standing watch_standing(sim::World& world, double h, int key);
 
 }  // namespace vivify::validation

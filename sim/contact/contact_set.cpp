@@ -208,7 +208,7 @@ std::optional<Eigen::Vector3d> ground_velocity(const std::vector<ContactMemory>&
     if (!collider.moves() && belt.isZero(0)) continue;
     const Eigen::Isometry3d before = collider.pose(begin), after = collider.pose(end);
     const Eigen::Vector3d normal = collider.nearest(contact.anchor).normal;
-    const Eigen::Vector3d along = after.linear() * (belt - normal * normal.dot(belt));
+    const Eigen::Vector3d along = after.linear() * tangential(normal, belt);
     flow +=
         contact.normal_force * ((after * contact.anchor - before * contact.anchor) / (end - begin) + along);
   }
