@@ -33,6 +33,7 @@ inline Schema sample_schema() {
           .field("friction", number("Coulomb coefficient.").at_least(0).infinite().initially(1))
           .field("model", std::move(model))
           .field("rest_space", std::move(space))
+          .field("outline", list("Its corners.", vector("A corner.", 2).required()).items_at_least(3))
           .field("looks", dictionary("Material of each part.", string("Name of a material.")));
   return object("A test scene.")
       .field("version", integer("Version of the format.").at_least(1).at_most(1).required())

@@ -54,6 +54,7 @@ TEST(Resolve, FillsInDefaultsInTheOrderOfTheSchema) {
   EXPECT_EQ(body["model"]["density"].as_number(), 1000);
   EXPECT_EQ(body["rest_space"]["type"].as_string(), "cage");
   EXPECT_EQ(body["rest_space"]["vertices"].as_integer(), 8);
+  EXPECT_FALSE(body.has("outline"));  // a list with items, and left out
   EXPECT_TRUE(body["looks"].entries().empty());
   EXPECT_EQ(value.entries()[0].first, "version");
   EXPECT_EQ(value.entries().back().first, "cutoff");

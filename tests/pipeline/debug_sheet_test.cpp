@@ -124,7 +124,19 @@ TEST_F(DebugSheet, OutlinesFlatBodiesAsTheyAreDrawn) {
   ASSERT_EQ(run("simulate", {"--frames", "1-3"}).code, 0);
   const Outcome outcome = sheet({"--debug", "--count", "1"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_GE(count(picture(), kRestShape), 400);
+  // Blue pixels go once around the rectangle, 0.8 by 0.6 m.
+  const render::Image image = picture();
+  Eigen::AlignedBox2i box;
+  for (int y = kGap; y < kGap + kHeight; ++y) {
+    for (int x = kGap; x < kGap + kWidth; ++x) {
+      if (is_colour(image, {x, y}, kRestShape)) box.extend(Eigen::Vector2i(x, y));
+    }
+  }
+  ASSERT_FALSE(box.isEmpty());
+  const double width = box.sizes().x(), height = box.sizes().y();
+  EXPECT_NEAR(width / height, 0.8 / 0.6, 0.1);
+  EXPECT_GE(count(image, kRestShape), 0.6 * 2 * (width + height));
+  EXPECT_LE(count(image, kRestShape), 1.5 * 2 * (width + height));
 }
 
 TEST_F(DebugSheet, NeedsARunThatWasSimulated) {
