@@ -6,9 +6,9 @@ import sys
 
 import numpy as np
 
-ASSETS = pathlib.Path(__file__).parent.parent
-sys.path[:0] = [str(ASSETS), str(ASSETS / "teacup")]
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import files
+import generator
 import lattice
 
 RADIUS = 0.3  # m
@@ -24,22 +24,12 @@ def ball():
     return points, dict(zip(COLORS, sides))
 
 
-def main():
+def make():
     points, triangles = ball()
     parts = [{"name": name, "positions": points, "triangles": triangles[name], "color": color, "metallic": 0.0,
               "roughness": 0.3} for name, color in COLORS.items()]
-    data = files.glb_bytes("ball", parts, generator="assets/ball/make.py")
-    path = pathlib.Path(__file__).parent / "ball.glb"
-    if "--check" not in sys.argv[1:]:
-        path.write_bytes(data)
-        return
-    committed, made = files.read_glb(path.read_bytes()), files.read_glb(data)
-    for name in made:
-        same = name in committed and all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=1e-6)
-                                         for a, b in zip(committed[name], made[name]))
-        if not same:
-            sys.exit(f"part {name} of {path.name} is not what make.py makes")
+    return {"ball.glb": files.glb_bytes("ball", parts, generator="assets/ball/make.py")}
 
 
 if __name__ == "__main__":
-    main()
+    generator.main(make, __file__, "Makes ball.glb.")

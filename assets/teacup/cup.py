@@ -7,6 +7,9 @@ flows from one to the other. The axis is x = z = 0, the foot stands on y = 0, th
 
 import numpy as np
 
+from face import Face, ellipse
+from surface import quads_to_triangles, signed_volume
+
 AROUND = 144          # vertices of a full ring; 16 * 9, so that discs can be closed by halving it four times
 BLOCK = 6             # quads along each side of the openings for the handle
 BLEND = 0.085         # width of the smooth union of wall and handle (m)
@@ -119,16 +122,6 @@ class Shape:
             move = self(p) / np.maximum(np.einsum("ij,ij->i", gradient, gradient), 0.05)
             p = p - np.clip(move, -0.03, 0.03)[:, None] * gradient
         return p
-
-
-def quads_to_triangles(vertices, quads):
-    """Splits quads (#Q by 4) along their shorter diagonal."""
-    d02 = np.linalg.norm(vertices[quads[:, 0]] - vertices[quads[:, 2]], axis=1)
-    d13 = np.linalg.norm(vertices[quads[:, 1]] - vertices[quads[:, 3]], axis=1)
-    first = (d02 <= d13 + 1e-12)[:, None]
-    one = np.where(first, quads[:, [0, 1, 2]], quads[:, [0, 1, 3]])
-    two = np.where(first, quads[:, [0, 2, 3]], quads[:, [1, 2, 3]])
-    return np.stack([one, two], axis=1).reshape(-1, 3)
 
 
 def ring(radius, height, count):
@@ -289,91 +282,23 @@ def body(profile):
     return vertices[used], triangles.reshape(-1, 3), np.array(names)
 
 
-def signed_volume(vertices, triangles):
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+def face_chart(profile):
+    """Chart of the outer wall for face.Face, about the middle of the face."""
+    s0 = profile.outside(FACE_HEIGHT)
 
-
-class Face:
-    """Builds parts in the chart of the outer wall: u to the right as seen from +z's side (towards +x), v upwards (m)."""
-
-    def __init__(self, profile):
-        self.profile = profile
-        self.s0 = profile.outside(FACE_HEIGHT)
-
-    def frame(self, u, v):
-        """Points on the wall and its outward normals."""
-        s = self.s0 + v
-        r, y = np.moveaxis(self.profile.at(s), -1, 0)
-        nr, ny = np.moveaxis(self.profile.normal(s), -1, 0)
+    def frame(u, v):
+        s = s0 + v
+        r, y = np.moveaxis(profile.at(s), -1, 0)
+        nr, ny = np.moveaxis(profile.normal(s), -1, 0)
         angle = np.pi / 2 - u / BELLY
         cos, sin = np.cos(angle), np.sin(angle)
         return np.stack([r * cos, y, r * sin], -1), np.stack([nr * cos, ny, nr * sin], -1)
-
-    def dome(self, outline, height, base=None, power=2.0, sink=0.004, rings=10, around=48):
-        """A closed pillow over the star-shaped region outline(rho, psi) -> (u, v), its edge `sink` below the base."""
-        rho = np.sin(np.linspace(0, np.pi / 2, rings + 1)[1:])
-        psi = 2 * np.pi * np.arange(around) / around
-        grid_rho, grid_psi = np.meshgrid(np.concatenate([[0.0], rho]), psi, indexing="ij")
-        u, v = outline(grid_rho, grid_psi)
-        ground = base(u, v) if base else 0.0
-        lift = (height + sink) * np.sqrt(np.maximum(1 - grid_rho**power, 0)) - sink + ground
-        p, n = self.frame(u, v)
-        top = p + n * lift[..., None]
-        count = rings * around
-        vertices = np.concatenate([top[:1, 0], top[1:].reshape(-1, 3), (p - n * 0.006 + n * np.broadcast_to(ground, u.shape)[..., None])[:1, 0]])
-        triangles = []
-        ids = 1 + np.arange(count).reshape(rings, around)
-        for k in range(around):
-            k1 = (k + 1) % around
-            triangles.append((0, ids[0, k], ids[0, k1]))
-            for j in range(rings - 1):
-                triangles += [(ids[j, k], ids[j + 1, k], ids[j + 1, k1]), (ids[j, k], ids[j + 1, k1], ids[j, k1])]
-            triangles.append((ids[-1, k], count + 1, ids[-1, k1]))
-        triangles = np.array(triangles)
-        if signed_volume(vertices - vertices.mean(axis=0), triangles) < 0:
-            triangles = triangles[:, ::-1]
-        return vertices, triangles
-
-    def tube(self, u, v, radius, lift=0.004, around=12):
-        """A closed tube along the chart curve (u, v), thinning to nothing at its ends; radius: one per point."""
-        p, n = self.frame(u, v)
-        centre = p + lift * n
-        along = np.gradient(centre, axis=0)
-        along /= np.linalg.norm(along, axis=1)[:, None]
-        side = np.cross(along, n)
-        psi = 2 * np.pi * np.arange(around) / around
-        rings = centre[:, None] + radius[:, None, None] * (np.cos(psi)[None, :, None] * side[:, None]
-                                                           + 0.8 * np.sin(psi)[None, :, None] * n[:, None])
-        rings = rings[1:-1]
-        count = len(rings)
-        vertices = np.concatenate([rings.reshape(-1, 3), centre[:1], centre[-1:]])
-        ids = np.arange(count * around).reshape(count, around)
-        triangles = []
-        for k in range(around):
-            k1 = (k + 1) % around
-            triangles += [(count * around, ids[0, k1], ids[0, k]), (count * around + 1, ids[-1, k], ids[-1, k1])]
-            for j in range(count - 1):
-                triangles += [(ids[j, k], ids[j, k1], ids[j + 1, k1]), (ids[j, k], ids[j + 1, k1], ids[j + 1, k])]
-        triangles = np.array(triangles)
-        if signed_volume(vertices - vertices.mean(axis=0), triangles) < 0:
-            triangles = triangles[:, ::-1]
-        return vertices, triangles
-
-
-def ellipse(cu, cv, a, b, turn=0.0):
-    """Outline of an ellipse about (cu, cv), half axes a and b, turned counter-clockwise."""
-    cos, sin = np.cos(turn), np.sin(turn)
-
-    def outline(rho, psi):
-        x, y = a * rho * np.cos(psi), b * rho * np.sin(psi)
-        return cu + cos * x - sin * y, cv + sin * x + cos * y
-    return outline
+    return frame
 
 
 def face_parts(profile):
     """List of (part name, vertices, triangles) of everything that is set on the body; each one closed."""
-    face, parts = Face(profile), []
+    face, parts = Face(face_chart(profile)), []
     for side in (-1, 1):
         eye_u, eye_v, eye_a, eye_b, eye_h, turn = 0.168 * side, 0.055, 0.098, 0.128, 0.034, -0.10 * side
 
