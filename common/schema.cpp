@@ -118,8 +118,15 @@ Schema variant(std::string doc, std::string tag) {
   schema.tag = std::move(tag);
   return schema;
 }
+Schema one_of(std::string doc) { return variant(std::move(doc), ""); }
 
 namespace {
+
+std::vector<std::string> names_of(const std::vector<std::pair<std::string, Schema>>& entries) {
+  std::vector<std::string> names;
+  for (const auto& [name, schema] : entries) names.push_back(name);
+  return names;
+}
 
 std::string wanted_text(const Schema& schema) {
   switch (schema.kind) {
@@ -139,8 +146,11 @@ std::string wanted_text(const Schema& schema) {
       return "a list of " + std::to_string(schema.size) + " numbers";
     case Schema::Kind::list:
       return "a list";
-    case Schema::Kind::object:
     case Schema::Kind::variant:
+      if (schema.tag.empty())
+        return "one of " + join_words(names_of(schema.options), "or") + " with its settings";
+      return "a map of keys and values";
+    case Schema::Kind::object:
     case Schema::Kind::dictionary:
       return "a map of keys and values";
   }
@@ -160,12 +170,6 @@ std::string found_text(const ConfigNode& node) {
   }
   std::string text = node.scalar.substr(0, 60);
   return (node.quoted ? "the quoted text '" : "'") + text + (node.scalar.size() > 60 ? "…'" : "'");
-}
-
-std::vector<std::string> names_of(const std::vector<std::pair<std::string, Schema>>& entries) {
-  std::vector<std::string> names;
-  for (const auto& [name, schema] : entries) names.push_back(name);
-  return names;
 }
 
 const Schema* find(const std::vector<std::pair<std::string, Schema>>& entries, const std::string& name) {
@@ -298,7 +302,7 @@ class Resolver {
         wrong_type(schema, node, path);
         return {};
       case Schema::Kind::variant:
-        return resolve_variant(schema, node, path);
+        return schema.tag.empty() ? resolve_one_of(schema, node, path) : resolve_variant(schema, node, path);
     }
     return {};
   }
@@ -486,6 +490,29 @@ class Resolver {
     value.set(schema.tag, std::move(tag_value));
     const Value rest = resolve_fields(option->fields, node, path, &schema);
     for (const auto& [key, field] : rest.entries()) value.set(key, field);
+    return value;
+  }
+
+  Value resolve_one_of(const Schema& schema, const ConfigNode& node, const std::string& path) {
+    if (node.kind != ConfigNode::Kind::map || node.entries.size() != 1) {
+      wrong_type(
+          schema, node, path,
+          node.entries.size() > 1 ? "indent the settings of " + node.entries[0].key + " below it" : "");
+      return {};
+    }
+    const ConfigNode::Entry& entry = node.entries.front();
+    const Schema* const option = find(schema.options, entry.key);
+    if (option == nullptr) {
+      const std::vector<std::string> names = names_of(schema.options);
+      const std::string nearest = meant(entry.key, names);
+      problem(entry.key_where, "unknown key '" + entry.key + "' in " + path,
+              nearest.empty() ? "known keys: " + join_words(names) : nearest);
+      return {};
+    }
+    const bool given = entry.value.kind != ConfigNode::Kind::null;
+    Value value = Value::map();
+    value.set(entry.key,
+              resolve(*option, given ? entry.value : empty_map(entry.key_where), path + "." + entry.key));
     return value;
   }
 

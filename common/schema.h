@@ -63,7 +63,7 @@ class Schema {
   Value default_value;
   std::vector<std::string> choices;
   std::vector<std::pair<std::string, Schema>> fields;  // of an object
-  std::string tag;  // of a variant: the key that selects, for example "type"
+  std::string tag;  // of a variant: the key that selects, for example "type"; empty: the option is the key
   std::vector<std::pair<std::string, Schema>> options;  // of a variant
   std::shared_ptr<Schema> item;                         // of a list or dictionary
 };
@@ -82,6 +82,8 @@ Schema dictionary(std::string doc, Schema item);  // free keys, each with a valu
 Schema object(std::string doc);  // an object none of whose fields is required may be left out
 // One of several objects, selected by the key `tag`; `initially("name")` makes the tag optional.
 Schema variant(std::string doc, std::string tag);
+// One of several objects, under its name as the only key: `walk: {speed: 0.5}`.
+Schema one_of(std::string doc);
 
 // Checks `node` against `schema` and fills in defaults; a key without a value counts as left out. Adds one
 // Error(usage) per problem to `errors`, in the order of the file, such as

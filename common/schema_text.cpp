@@ -105,6 +105,16 @@ Json bare_json(const Schema& schema) {
     case Schema::Kind::variant: {
       Json options = Json::array();
       for (const auto& [name, option] : schema.options) {
+        if (schema.tag.empty()) {
+          Json only = Json::object();
+          only[name] = schema_json(option);
+          options.push_back({{"title", name},
+                             {"type", "object"},
+                             {"properties", std::move(only)},
+                             {"additionalProperties", false},
+                             {"required", Json::array({name})}});
+          continue;
+        }
         Json properties = Json::object();
         properties[schema.tag] = {{"const", name}, {"description", option.doc}};
         // Only the option that is the default may leave its tag out; so exactly one option fits.
@@ -183,7 +193,7 @@ std::string kind_text(const Schema& schema) {
     case Schema::Kind::object:
       return "section";
     case Schema::Kind::variant:
-      return "section by `" + schema.tag + "`";
+      return schema.tag.empty() ? "section of one key" : "section by `" + schema.tag + "`";
   }
   return "";
 }
@@ -250,6 +260,12 @@ void append_sections(std::string& text, const Schema& schema, const std::string&
       append_heading(text, level, "`" + path + "`");
       std::vector<std::string> names;
       for (const auto& [name, option] : schema.options) names.push_back("`" + name + "`");
+      if (schema.tag.empty()) {
+        text += schema.doc + " The key is " + join_words(names, "or") + ".\n\n";
+        for (const auto& [name, option] : schema.options)
+          append_sections(text, option, path + "." + name, level + 1);
+        return;
+      }
       text +=
           schema.doc + " The key `" + schema.tag + "` is " + join_words(names, "or") +
           (schema.default_value.is_null() ? ""

@@ -9,6 +9,7 @@
 #include "meshing/tetrahedralize.h"
 #include "pipeline/handle_settings.h"
 #include "pipeline/placement.h"
+#include "sim/control/behavior.h"
 #include "sim/control/controller.h"
 #include "sim/elastic/models.h"
 #include "sim/settings.h"
@@ -111,6 +112,10 @@ class BodyCheck {
     if (is_planar(kind_)) plane();
     rest_space();
     check_handles(body_, where_, is_planar(kind_), errors_);
+    if (!body_["behavior"].items().empty() && body_["controller"]["type"].as_string() != "rest") {
+      fail(body_["controller"], where_ + ".controller and .behavior both say what the body does",
+           "move the controller into the list `behavior`, or remove one of them");
+    }
   }
 
  private:
@@ -234,11 +239,23 @@ Schema body_schema() {
                  .initially(0.0))
       .field("handles", list("What holds parts of the body, as pins or along keyframes.", handle_schema()))
       .field("controller", sim::controller_schema())
+      .field("behavior", sim::behavior_schema())
       .field("solver", sim::solver_schema());
 }
 
 void check_body(const Value& body, const std::string& where, std::vector<Error>& errors) {
   BodyCheck(body, where, errors).run();
+}
+
+std::vector<std::pair<std::string, Value>> behaviors_of(const Value& body) {
+  const std::vector<Value>& script = body["behavior"].items();
+  if (script.empty()) return {{"controller", body["controller"]}};
+  std::vector<std::pair<std::string, Value>> behaviors;
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    const auto& [name, settings] = script[i].entries().front();
+    behaviors.emplace_back("behavior[" + std::to_string(i) + "]." + name, settings);
+  }
+  return behaviors;
 }
 
 const Value& shape_of(const Value& body) { return body.has("mesh") ? body["mesh"] : body["outline"]; }

@@ -27,6 +27,10 @@ Schema body_schema();
 void check_body(const Value& body, const std::string& where, std::vector<Error>& errors);
 
 // The setting that gives the shape of a body: `mesh` or `outline`.
+// The settings of its controller, or of each of its behaviours, with their place in the body:
+// "behavior[2].hop".
+std::vector<std::pair<std::string, Value>> behaviors_of(const Value& body);
+
 const Value& shape_of(const Value& body);
 
 // The example poses of the rest space; none for a rest space without.

@@ -18,12 +18,13 @@
 #include "render/lens.h"
 #include "render/lights/light.h"
 #include "render/scene.h"
+#include "sim/control/behavior.h"
+#include "sim/control/course.h"
 #include "sim/elastic/models.h"
 
 namespace vivify::pipeline {
 namespace {
 
-constexpr double kLeastPlanarShare = 0.5;  // of a heading that a body of the plane follows
 constexpr double kMostFrames = 1'000'000;
 
 Schema video_schema() {
@@ -72,7 +73,11 @@ void walk(const Schema& schema, const Value& value, const std::string& name, con
     case Schema::Kind::variant:
       if (value.kind() != Value::Kind::map) return;
       for (const auto& [option, fields] : schema.options) {
-        if (value[schema.tag].as_string() == option) walk(fields, value, name, visit);
+        if (schema.tag.empty()) {
+          walk(fields, value[option], below(option), visit);
+        } else if (value[schema.tag].as_string() == option) {
+          walk(fields, value, name, visit);
+        }
       }
       return;
     case Schema::Kind::list:
@@ -170,6 +175,11 @@ class SemanticCheck {
              where + ".handles does not fit: physics = static has no forces from outside",
              "make the physics dynamic, or give poses");
       }
+      for (const auto& [part, settings] : behaviors_of(bodies[i])) {
+        sim::check_course(settings, where + "." + part, is_planar(body_kind(bodies[i])), errors_);
+        for (const Value& other : sim::looked_at(settings))
+          body_exists(other, where + "." + part);
+      }
       for (const Value& example : examples_of(bodies[i])) {
         const std::filesystem::path pose =
             example.has("pose") ? scene_.resolve_path(example["pose"].as_string()) : "";
@@ -194,15 +204,17 @@ class SemanticCheck {
     }
   }
 
-  void camera() {
-    const Value& follow = scene_.settings["camera"]["follow"];
-    if (follow.is_null()) return;
+  void body_exists(const Value& name, const std::string& who) {
     std::vector<std::string> bodies;
     for (const Value& body : scene_.settings["bodies"].items()) bodies.push_back(body["name"].as_string());
-    if (std::find(bodies.begin(), bodies.end(), follow.as_string()) == bodies.end()) {
-      fail(follow, "camera.follow = " + follow.as_string() + ": there is no such body",
-           suggestion(follow.as_string(), bodies));
-    }
+    if (std::find(bodies.begin(), bodies.end(), name.as_string()) != bodies.end()) return;
+    fail(name, who + " = " + name.as_string() + ": there is no such body",
+         suggestion(name.as_string(), bodies));
+  }
+
+  void camera() {
+    const Value& follow = scene_.settings["camera"]["follow"];
+    if (!follow.is_null()) body_exists(follow, "camera.follow");
   }
 
   void frames() {
@@ -297,14 +309,6 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
           {bodies[i]["spawn_s"].where(), "bodies[" + std::to_string(i) + "].spawn_s = " + number_text(spawn) +
                                              " s is after the last frame, at " + number_text(last) +
                                              " s: the body never appears"});
-    }
-    const Value& heading = bodies[i]["controller"]["heading_deg"];
-    if (!is_planar(body_kind(bodies[i])) || heading.is_null()) continue;
-    const double along_x = std::sin(heading.as_number() * std::numbers::pi / 180);
-    if (std::abs(along_x) < kLeastPlanarShare) {
-      warnings.push_back({heading.where(), "bodies[" + std::to_string(i) +
-                                               "].controller.heading_deg leads out of the plane, where the "
-                                               "body cannot go: 90 is right, -90 left"});
     }
   }
   return warnings;

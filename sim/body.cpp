@@ -9,6 +9,7 @@
 #include "common/registry.h"
 #include "common/text.h"
 #include "sim/contact/contact_points.h"
+#include "sim/control/behavior.h"
 #include "sim/control/rigid_motion.h"
 #include "sim/elastic/models/models.h"
 #include "sim/frame_report.h"
@@ -158,15 +159,11 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   handles_ = Handles(input.handles, model_.mesh.V, model_.weight / model_.height);
   const int d = model_.dimension();
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);
-  const ControlledBody controlled{model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h};
-  controller_ = make_controller(controlled, input.controller);
+  const ControlledBody controlled{model_.mass,           rest_,      model_.height,
+                                  -settings.gravity.y(), settings.h, model_.rest->parameters()};
+  controller_ = input.behavior.items().empty() ? make_controller(controlled, input.controller)
+                                               : make_script(controlled, input.behavior);
   const auto keyed = controller_->rest_parameters(0);
-  if (keyed && keyed->size() != model_.rest->parameters()) {
-    throw Error(ErrorKind::usage,
-                "body '" + model_.name + "': the controller gives " + std::to_string(keyed->size()) +
-                    " weights and the rest space has " + std::to_string(model_.rest->parameters()),
-                "give one weight per example", input.controller.where());
-  }
   if (!keyed || !settings.statics) return;
   const Eigen::VectorXd q = model_.rest->basis().transpose() * *keyed;
   StepRecord record;
@@ -213,10 +210,13 @@ bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
   return true;
 }
 
-Body::Wish Body::wish(long step, double load, const std::optional<Eigen::Vector3d>& ground) {
-  for (const ContactMemory& memory : state_.contacts) load += memory.normal_force;
+OtherBody Body::seen() const {
+  return {model_.name, centre_of_mass(model_.mass, state_.x), controller_->arrived()};
+}
+
+Body::Wish Body::wish(long step, const Ground& ground, Others others) {
   Wish wish;
-  wish.goals = controller_->goals({state_.x, state_.v, load, ground});
+  wish.goals = controller_->goals({state_.x, state_.v, ground.load, ground.velocity, others});
   if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
     wish.q = model_.rest->basis().transpose() * *p;
   } else if (controller_->passive()) {

@@ -26,6 +26,7 @@ struct BodyInput {
   std::vector<ExamplePose> examples;  // placed in the scene (examples, strains)
   ContactPoints contact_points;       // that touch colliders
   Value model, regularizer, contact, controller, solver;
+  Value behavior = Value::list({});  // in place of the controller when it has items
   std::optional<ContactSurface> surface =
       {};  // that touches other bodies; the boundary of the mesh when empty
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // at the start, m/s
@@ -74,13 +75,16 @@ class Body {
   double wall_seconds() const { return wall_seconds_; }  // of its steps in this process
   void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
 
-  // What the body wants in a step; `step` counts from 1. Advances the controller's clock. `load`: sum of the
-  // normal forces from other bodies in the last step, N. `ground`: velocity of the colliders that it touches.
+  // What the body wants in a step; `step` counts from 1. Advances the controller's clock. `ground`: what it
+  // stands on, bodies too. `others`: all bodies that are present.
   struct Wish {
     std::vector<Goal> goals;
     std::optional<Eigen::VectorXd> q;  // rest parameters that are given instead of sought
   };
-  Wish wish(long step, double load, const std::optional<Eigen::Vector3d>& ground);
+  Wish wish(long step, const Ground& ground, Others others);
+
+  // As controllers of other bodies see it.
+  OtherBody seen() const;
 
   // Moves the surface that touches other bodies to x.
   void move_surface(const Eigen::VectorXd& x) { surface_->move_to(x); }

@@ -1,8 +1,8 @@
 #include "sim/world.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <set>
 
 #include "common/parallel.h"
 #include "sim/frame_report.h"
@@ -68,16 +68,22 @@ std::vector<BodyPairs> World::find_near() {
 }
 
 std::vector<Body::Wish> World::wishes() {
-  std::vector<double> loads(bodies_.size(), 0);
+  std::vector<double> loads(bodies_.size(), 0);  // by other bodies, upwards, N
   for (const PairMemory& touching : touching_) {
-    for (const int b : std::set{touching.identity.body_a, touching.identity.body_b})
-      loads[b] += touching.normal_force;
+    const auto [a, b] = std::pair(touching.identity.body_a, touching.identity.body_b);
+    if (a == b) continue;
+    const double lift = touching.normal_force * touching.normal.y();  // of b on a
+    loads[lift > 0 ? a : b] += std::abs(lift);
   }
+  std::vector<OtherBody> seen;
+  for (const Member& member : members_) seen.push_back(member.body->seen());
   std::vector<Body::Wish> wishes(bodies_.size());
   const double end = time(), begin = end - settings_.h;
   parallel_for(members_.size(), [&](std::size_t m) {
     const auto [b, body] = members_[m];
-    wishes[b] = body->wish(steps_, loads[b], ground_velocity(body->state().contacts, colliders_, begin, end));
+    Ground ground = ground_under(body->state().contacts, colliders_, begin, end);
+    ground.load += loads[b];
+    wishes[b] = body->wish(steps_, ground, seen);
   });
   return wishes;
 }

@@ -287,6 +287,7 @@ sim::BodyInput simulated_body(const std::filesystem::path& out, const Value& bod
   input.regularizer = body["regularizer"];
   input.contact = body["contact"];
   input.controller = body["controller"];
+  input.behavior = body["behavior"];
   input.solver = body["solver"];
   input.surface = load_contact_surface(input.rest, mesh);
   input.velocity = body["velocity"].as_vector3();
@@ -304,7 +305,7 @@ std::string simulation_key(const Job& job) {
       .add("friction", scene.settings["friction"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
-    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "solver", "velocity",
+    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "behavior", "solver", "velocity",
                              "handles", "spawn_s"}) {
       key.add(part, body[part]);
     }

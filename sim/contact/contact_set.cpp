@@ -1,5 +1,6 @@
 #include "sim/contact/contact_set.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -195,25 +196,24 @@ void ContactSet::update_memory(const Eigen::VectorXd& x, std::vector<ContactMemo
   memory = std::move(next);
 }
 
-std::optional<Eigen::Vector3d> ground_velocity(const std::vector<ContactMemory>& memory,
-                                               const std::vector<Collider>& colliders, double begin,
-                                               double end) {
-  double load = 0;
+Ground ground_under(const std::vector<ContactMemory>& memory, const std::vector<Collider>& colliders,
+                    double begin, double end) {
+  Ground ground;
   Eigen::Vector3d flow = Eigen::Vector3d::Zero();
   for (const ContactMemory& contact : memory) {
     if (!contact.touching) continue;
     const Collider& collider = colliders[static_cast<std::size_t>(contact.collider)];
-    load += contact.normal_force;
+    const Eigen::Vector3d normal = collider.nearest(contact.anchor).normal;
+    const Eigen::Isometry3d before = collider.pose(begin), after = collider.pose(end);
+    const double load = contact.normal_force * std::max(0.0, (before.linear() * normal).y());
+    ground.load += load;
     const Eigen::Vector3d& belt = collider.surface_velocity();
     if (!collider.moves() && belt.isZero(0)) continue;
-    const Eigen::Isometry3d before = collider.pose(begin), after = collider.pose(end);
-    const Eigen::Vector3d normal = collider.nearest(contact.anchor).normal;
     const Eigen::Vector3d along = after.linear() * tangential(normal, belt);
-    flow +=
-        contact.normal_force * ((after * contact.anchor - before * contact.anchor) / (end - begin) + along);
+    flow += load * ((after * contact.anchor - before * contact.anchor) / (end - begin) + along);
   }
-  if (load == 0) return std::nullopt;
-  return Eigen::Vector3d(flow / load);
+  if (ground.load > 0) ground.velocity = flow / ground.load;
+  return ground;
 }
 
 }  // namespace vivify::sim

@@ -133,10 +133,15 @@ class ContactSet {
   std::vector<Contact> contacts_;
 };
 
-// Mean velocity, weighted by normal force, of what was touched at the end of the last step, in a step from
-// `begin` to `end` (s), m/s.
-std::optional<Eigen::Vector3d> ground_velocity(const std::vector<ContactMemory>& memory,
-                                               const std::vector<Collider>& colliders, double begin,
-                                               double end);
+// What a body stands on: what pushes it upwards counts, walls do not.
+struct Ground {
+  double load = 0;                               // sum of the upward parts of the normal forces, N
+  std::optional<Eigen::Vector3d> velocity = {};  // of the colliders among it, weighted by load, m/s
+};
+
+// Colliders that were touched at the end of the last step, with their velocity in a step from `begin` to
+// `end` (s).
+Ground ground_under(const std::vector<ContactMemory>& memory, const std::vector<Collider>& colliders,
+                    double begin, double end);
 
 }  // namespace vivify::sim

@@ -7,14 +7,16 @@
 #include "sim/control/controllers/hop.h"
 #include "sim/control/controllers/rest.h"
 #include "sim/control/controllers/roll.h"
+#include "sim/control/controllers/wait.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 4> kControllers = {{
+constexpr std::array<ControllerEntry, 5> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
     {"roll", roll_controller_schema, make_roll_controller},
+    {"wait", wait_controller_schema, make_wait_controller},
     {"blend", blend_controller_schema, make_blend_controller},
 }};
 

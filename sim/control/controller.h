@@ -22,16 +22,26 @@ struct ControlledBody {
   double height;                // of the body at rest, m
   double gravity;               // downwards, m/s²
   double h;                     // step size, s
+  int parameters = 0;           // p of its rest space
   int dimension() const { return static_cast<int>(rest.size() / mass.size()); }
 };
+
+// What a controller sees of the other bodies that are present.
+struct OtherBody {
+  std::string_view name;
+  Eigen::Vector3d centre;  // of mass, m
+  bool arrived;            // has done what it was asked for
+};
+using Others = std::span<const OtherBody>;
 
 // What a controller sees at the start of a step.
 struct Observation {
   const Eigen::VectorXd& x;  // d #V, m
   const Eigen::VectorXd& v;  // d #V, m/s
-  double load;               // sum of the normal forces of the last step, N
-  // Velocity in the coming step of the colliders that it touches, m/s; nothing where it touches none.
+  double load;               // sum of the upward parts of the normal forces of the last step, N
+  // Velocity in the coming step of the colliders that it stands on, m/s; nothing where it stands on none.
   std::optional<Eigen::Vector3d> ground = {};
+  Others others = {};
 };
 
 class Controller {
@@ -40,6 +50,9 @@ class Controller {
 
   // Goals of the coming step. Advances the controller's clock by one step.
   virtual std::vector<Goal> goals(const Observation& observation) = 0;
+
+  // Whether it has done all that it was asked for; it stands by then.
+  virtual bool arrived() const { return false; }
 
   // Parameters p of the rest shape at time t (s) when they are prescribed instead of sought; then the goals
   // have no effect.

@@ -33,6 +33,12 @@ inline Schema sample_schema() {
           .field("friction", number("Coulomb coefficient.").at_least(0).infinite().initially(1))
           .field("model", std::move(model))
           .field("rest_space", std::move(space))
+          .field(
+              "steps",
+              list("What it does, one after the other.",
+                   one_of("A deed.")
+                       .option("walk", object("Goes on foot.").field("speed", number("Speed.").initially(1)))
+                       .option("wait", object("Stands still.").field("for_s", number("Time.").required()))))
           .field("outline", list("Its corners.", vector("A corner.", 2).required()).items_at_least(3))
           .field("looks", dictionary("Material of each part.", string("Name of a material.")));
   return object("A test scene.")

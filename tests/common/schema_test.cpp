@@ -82,6 +82,32 @@ TEST(Resolve, ResolvedYamlReadsBackToTheSameBytes) {
   }
 }
 
+TEST(Resolve, ReadsOneOfSeveralByItsKey) {
+  const auto with = [](const std::string& steps) {
+    return "version: 1\nbodies:\n"
+           "  - {name: cup, mesh: c.obj, model: {type: solid3d, stiffness: 5}, steps: " +
+           steps + "}\n";
+  };
+  const auto [value, errors] = read(with("[{walk: {speed: 2}}, {wait: {for_s: 3}}, {walk: }]"));
+  EXPECT_TRUE(errors.empty()) << errors.front();
+  const std::vector<Value>& steps = value["bodies"].items().at(0)["steps"].items();
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps[0].entries().at(0).first, "walk");
+  EXPECT_EQ(steps[0]["walk"]["speed"].as_number(), 2);
+  EXPECT_EQ(steps[1]["wait"]["for_s"].as_number(), 3);
+  EXPECT_EQ(steps[2]["walk"]["speed"].as_number(), 1);
+  EXPECT_EQ(read(value.yaml()).value.yaml(), value.yaml());
+
+  EXPECT_THAT(
+      read(with("[{wlak: {}}]")).errors,
+      ElementsAre(
+          "s.yaml:3:77: error: unknown key 'wlak' in bodies[0].steps[0] (did you mean walk?)"));
+  EXPECT_THAT(read(with("[{walk: {}, speed: 3}]")).errors,
+              ElementsAre(HasSubstr("must be one of walk or wait")));
+  EXPECT_THAT(read(with("[walk]")).errors, ElementsAre(HasSubstr("found 'walk'")));
+  EXPECT_THAT(read(with("[{wait: {}}]")).errors, ElementsAre(HasSubstr("steps[0].wait.for_s is missing")));
+}
+
 TEST(Resolve, NamesEveryProblemOfAFileInOneGo) {
   const auto [value, errors] = read(
       "version: 2\n"

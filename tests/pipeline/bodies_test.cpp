@@ -439,12 +439,28 @@ TEST(Check, WarnsOfMaterialsWithoutFailing) {
   EXPECT_THAT(outcome.err, HasSubstr("warning: bodies[0].model: volume_stiffness is below"));
 }
 
-TEST(Check, WarnsOfHeadingsOutOfThePlane) {
-  const BodyScene scene({kLetter, "model: {type: solid2d}", "controller: {type: hop}"});
+TEST(Check, RefusesHeadingsOutOfThePlane) {
+  const BodyScene scene({kLetter, "model: {type: solid2d}", "controller: {type: hop, heading_deg: 0}"});
   const Outcome outcome = vivify({"check", scene.file().string()});
-  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:7:"));
-  EXPECT_THAT(outcome.err, HasSubstr("warning: bodies[0].controller.heading_deg leads out of the plane"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].controller.heading_deg leads out of the plane"));
+  EXPECT_THAT(outcome.err, HasSubstr("90 is to the right"));
+}
+
+TEST(Check, ReadsScripts) {
+  const BodyScene scene({kLetter, "model: {type: solid2d}",
+                         "behavior: [{hop: {to: [1, 0, 0], heading_deg: 90}}, {roll: {chase: nobody}},"
+                         " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}]"});
+  const Outcome outcome = vivify({"check", scene.file().string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[0].hop.heading_deg and .to are two courses"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[1].roll = nobody: there is no such body"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[2].wait = no_one: there is no such body"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[3].hop.heading_deg leads out of the plane"));
+  const BodyScene both({kLetter, "model: {type: solid2d}", "controller: {type: hop}", "behavior: [wait:]"});
+  EXPECT_THAT(vivify({"check", both.file().string()}).err,
+              HasSubstr("bodies[0].controller and .behavior both say what the body does"));
 }
 
 TEST(Check, TriesCameraAndLights) {

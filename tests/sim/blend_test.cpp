@@ -40,7 +40,7 @@ World world(const BodyInput& input, bool statics) {
 
 std::unique_ptr<Controller> controller(const std::string& yaml) {
   static const Vector mass = Vector::Ones(4), rest = Vector::Ones(12);
-  static const ControlledBody body{mass, rest, 1, 9.81, kStep};
+  static const ControlledBody body{mass, rest, 1, 9.81, kStep, 2};
   return make_controller(body, settings(controller_schema(), yaml));
 }
 
@@ -62,8 +62,8 @@ TEST(Blend, FollowsItsKeyframes) {
 }
 
 TEST(Blend, RefusesKeysThatDoNotFit) {
-  EXPECT_THROW(controller("{type: blend, keys: [{t: 1, weights: [0]}, {t: 1, weights: [1]}]}"), Error);
-  EXPECT_THROW(controller("{type: blend, keys: [{t: 1, weights: [0]}, {t: 2, weights: [1, 1]}]}"), Error);
+  EXPECT_THROW(controller("{type: blend, keys: [{t: 1, weights: [0, 0]}, {t: 1, weights: [1, 1]}]}"), Error);
+  EXPECT_THROW(controller("{type: blend, keys: [{t: 1, weights: [0, 0]}, {t: 2, weights: [1]}]}"), Error);
   try {
     world(blended("[{t: 0, weights: [0, 1]}]"), false);
     FAIL();

@@ -67,13 +67,16 @@ Schema blend_controller_schema() {
                  .initially("linear"));
 }
 
-std::unique_ptr<Controller> make_blend_controller(const ControlledBody&, const Value& settings) {
+std::unique_ptr<Controller> make_blend_controller(const ControlledBody& body, const Value& settings) {
   std::vector<Key> keys;
   for (const Value& item : settings["keys"].items()) {
     Key key = {item["t"].as_number(), item["weights"].as_vector()};
     if (!keys.empty() && !(key.t > keys.back().t)) fail(item, "controller.keys must be in the order of time");
-    if (!keys.empty() && key.weights.size() != keys.back().weights.size()) {
-      fail(item, "controller.keys must all have as many weights");
+    if (key.weights.size() != body.parameters) {
+      throw Error(ErrorKind::usage,
+                  "the controller gives " + std::to_string(key.weights.size()) +
+                      " weights and the rest space has " + std::to_string(body.parameters),
+                  "give one weight per example", item["weights"].where());
     }
     keys.push_back(std::move(key));
   }

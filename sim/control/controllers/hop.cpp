@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
-#include "sim/control/heading.h"
+#include "sim/control/body_goals.h"
+#include "sim/control/course.h"
 #include "sim/control/rigid_motion.h"
 
 namespace vivify::sim {
@@ -15,7 +17,6 @@ namespace {
 constexpr double kHeightFrequency = 6;   // ω of the height goal, 1/s (k_p = ω k_d)
 constexpr double kUprightFrequency = 8;  // wanted turning rate per radian of tilt, 1/s
 constexpr double kSoftWeight = 0.3;      // of landing and crouching, relative to the thrust
-constexpr double kTouchLoad = 0.05;      // share of the weight that counts as standing on the ground
 constexpr double kFall = 0.6;            // largest downward acceleration of a crouch, in g
 constexpr double kLongestCrouch = 2;     // of the asked duration
 constexpr double kLearning = 0.5;  // share of a missed take-off velocity that the next thrust asks for on top
@@ -23,85 +24,84 @@ constexpr double kLargestLearnt = 0.5;  // of the wanted take-off velocity
 constexpr double kLineGain = 0.5;       // share of a sideways offset that one flight takes back
 constexpr double kLargestSteer = 0.3;   // sideways take-off speed, of the upward one
 constexpr double kLongestFlight = 3;    // s; a body that never lands again starts over
+constexpr double kTurnOnGround = 2;     // largest turning rate about the vertical while it stands, 1/s
+constexpr double kExtra = 0.2;          // of a hop: a rest of the way so short lengthens the others
 
 enum Phase { kCrouch, kThrust, kFlight, kLand };
 constexpr const char* kPhaseNames[] = {"crouch", "thrust", "flight", "land"};
-
-double smooth_step(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 class HopController final : public Controller {
  public:
   HopController(const ControlledBody& body, const Value& settings)
       : body_(body),
+        course_(body, settings),
+        count_(settings.has("count") ? settings["count"].as_integer() : std::numeric_limits<long>::max()),
         weight_(settings["effort"].as_number()),
         crouch_depth_(settings["crouch_depth"].as_number() * body.height),
         crouch_s_(settings["crouch_s"].as_number()),
         thrust_s_(settings["thrust_s"].as_number()),
         land_s_(settings["land_s"].as_number()),
-        upright_(settings["upright"].as_number()) {
-    forward_ = heading_of(body, settings);
-    face_heading_ = settings["face_heading"].as_bool();
-    heading_ = std::atan2(forward_.x(), forward_.z());
-    take_off_ = std::sqrt(2 * body.gravity * settings["height"].as_number());
-    const double flight = 2 * take_off_ / body.gravity;
+        upright_(settings["upright"].as_number()),
+        turn_(settings["turn_deg"].as_number() * std::numbers::pi / 180),
+        face_heading_(settings["face_heading"].as_bool()),
+        take_off_(std::sqrt(2 * body.gravity * settings["height"].as_number())),
+        flight_s_(2 * take_off_ / body.gravity) {
     // The body travels in flight, and with half the speed while it pushes off.
-    const double cycle = crouch_s_ + 0.5 * thrust_s_ + flight + land_s_;
-    speed_ = settings["pace"].as_number() * cycle / (flight + 0.25 * thrust_s_);
-    rest_centre_ = centre_of_mass(body.mass, body.rest);
-    rest_rise_ = rest_centre_.y() - lowest_height(body.rest, body.dimension());
+    stride_ = settings["pace"].as_number() * (crouch_s_ + 0.5 * thrust_s_ + flight_s_ + land_s_);
+    rest_rise_ = centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension());
     time_ = land_s_;
   }
 
   std::vector<Goal> goals(const Observation& now) override {
-    const bool standing = now.load > kTouchLoad * body_.mass.sum() * body_.gravity;
+    const bool standing = stands(body_, now.load);
+    const Eigen::Matrix3d R = best_rotation(body_.mass, body_.rest, now.x);
     if (now.ground) ground_ = *now.ground;
+    if (!begun_) {
+      begun_ = true;
+      yaw_ = yaw_of(R);
+      way_ = course_.way(centre_of_mass(body_.mass, now.x), stride_, now.others);
+    }
     advance_phase(standing, now);
     time_ += body_.h;
     carried_ += body_.h * ground_;
+    if (!standing && phase_ != kThrust) return {};  // in the air no internal force moves the centre of mass
 
-    std::vector<Goal> goals;
-    if (!standing && phase_ != kThrust)
-      return goals;  // in the air no internal force moves the centre of mass
-    const double kd = std::sqrt(weight_ * body_.mass.sum()), soft = std::sqrt(kSoftWeight) * kd;
+    BodyGoals goals(body_, now.x);
+    Eigen::Vector3d rate = upright_rate(R, kUprightFrequency);
+    if (!planar()) rate.y() = yaw_rate(R);
     switch (phase_) {
       case kCrouch: {
-        const auto [height, rate] = crouch_path();
-        add_centre(goals, up(), soft, kHeightFrequency, height, rate);
-        add_centre(goals, forward_, soft, 0, 0, 0);
-        add_centre(goals, sideways(), soft, 0, 0, 0);
-        add_upright(goals, now.x, kSoftWeight);
+        const auto [height, fall] = crouch_path();
+        add_centre(goals, kSoftWeight, kHeightFrequency, height, Eigen::Vector3d(0, fall, 0));
+        goals.spin(kSoftWeight * upright_, rate);
         break;
       }
       case kThrust: {
         const double ramp = smooth_step(time_ / (0.5 * thrust_s_));
-        const Eigen::Vector3d asked = ramp * (wanted_take_off() + learnt_);
-        for (const Eigen::Vector3d& direction : {up(), forward_, sideways()}) {
-          add_centre(goals, direction, kd, 0, 0, direction.dot(asked));
-        }
-        add_upright(goals, now.x, 1);
+        if (turn_ != 0 && !planar()) rate.y() = ramp * turn_ / flight_s_;
+        add_centre(goals, 1, 0, 0, ramp * (wanted_take_off() + learnt_));
+        goals.spin(upright_, rate);
         break;
       }
       case kFlight:
         break;
       case kLand: {
-        add_centre(goals, up(), soft, kHeightFrequency, ground_height_, 0);
-        add_centre(goals, forward_, soft, 0, 0, 0);
-        add_centre(goals, sideways(), soft, 0, 0, 0);
-        add_upright(goals, now.x, kSoftWeight);
+        add_centre(goals, kSoftWeight, kHeightFrequency, ground_height_, Eigen::Vector3d::Zero());
+        goals.spin(kSoftWeight * upright_, rate);
         break;
       }
     }
-    return goals;
+    return goals.take();
   }
+
+  bool arrived() const override { return arrived_; }
 
   std::string phase() const override { return kPhaseNames[phase_]; }
 
   Eigen::VectorXd state() const override {
-    Eigen::VectorXd state(16);
-    state << phase_, time_, start_, start_rate_, ground_height_, learnt_, ground_, carried_;
+    Eigen::VectorXd state(25 + Course::kStateSize);
+    state << phase_, time_, start_, start_rate_, ground_height_, learnt_, ground_, carried_, begun_, arrived_,
+        hops_, yaw_, way_.forward, way_.offset, way_.left, course_.state();
     return state;
   }
 
@@ -114,20 +114,36 @@ class HopController final : public Controller {
     learnt_ = state.segment<3>(7);
     ground_ = state.segment<3>(10);
     carried_ = state.segment<3>(13);
+    begun_ = state[16] != 0;
+    arrived_ = state[17] != 0;
+    hops_ = static_cast<long>(state[18]);
+    yaw_ = state[19];
+    way_ = {state.segment<3>(20), state[23], state[24]};
+    course_.restore(state.tail<Course::kStateSize>());
   }
 
  private:
+  bool planar() const { return body_.dimension() == 2; }
   static Eigen::Vector3d up() { return Eigen::Vector3d::UnitY(); }
-  Eigen::Vector3d sideways() const { return up().cross(forward_); }
+  Eigen::Vector3d sideways() const { return up().cross(way_.forward); }
 
-  // Velocity of the centre of mass over the ground at take-off: the asked height and pace, and back to the
-  // line of travel.
+  // Velocity of the centre of mass over the ground at take-off: the asked height and pace, in equal hops to
+  // where the way ends, and back to the line of travel.
   Eigen::Vector3d wanted_take_off() const {
-    const double flight = 2 * take_off_ / body_.gravity;
-    const double offset = sideways().dot(start_ - rest_centre_);
-    const double back =
-        std::clamp(-kLineGain * offset / flight, -kLargestSteer * take_off_, kLargestSteer * take_off_);
-    return take_off_ * up() + speed_ * forward_ + back * sideways();
+    double reach = stride_;
+    if (std::isfinite(way_.left) && stride_ > 0)
+      reach = way_.left / std::max(1.0, std::ceil(way_.left / stride_ - kExtra));
+    const double speed = reach / (flight_s_ + 0.25 * thrust_s_);
+    const double back = std::clamp(-kLineGain * way_.offset / flight_s_, -kLargestSteer * take_off_,
+                                   kLargestSteer * take_off_);
+    return take_off_ * up() + speed * way_.forward + back * sideways();
+  }
+
+  // Turns towards where the body shall look.
+  double yaw_rate(const Eigen::Matrix3d& R) const {
+    const double wanted = face_heading_ ? std::atan2(way_.forward.x(), way_.forward.z()) : yaw_;
+    return std::clamp(kUprightFrequency * std::remainder(wanted - yaw_of(R), 2 * std::numbers::pi),
+                      -kTurnOnGround, kTurnOnGround);
   }
 
   // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
@@ -164,9 +180,15 @@ class HopController final : public Controller {
     time_ = 0;
     start_ = centre_of_mass(body_.mass, now.x) - carried_;
     start_rate_ = centre_of_mass(body_.mass, now.v).y() - ground_.y();
+    if (!arrived_) way_ = course_.way(start_, stride_, now.others);
     // The ground may be anywhere: the centre stands above the lowest vertex as it does at rest.
     if (phase == kCrouch || phase == kLand)
       ground_height_ = lowest_height(now.x, body_.dimension()) + rest_rise_ - carried_.y();
+  }
+
+  void rest_or_go_on(const Observation& now) {
+    arrived_ = arrived_ || hops_ >= count_ || (hops_ > 0 && course_.ends(way_));
+    enter(arrived_ ? kLand : kCrouch, now);
   }
 
   void advance_phase(bool standing, const Observation& now) {
@@ -177,6 +199,8 @@ class HopController final : public Controller {
       case kThrust:
         if (!standing && time_ > body_.h) {
           learn(now);
+          yaw_ += turn_;
+          ++hops_;
           enter(kFlight, now);
         } else if (time_ >= 2 * thrust_s_) {
           enter(kLand, now);  // did not leave the ground: try again
@@ -186,42 +210,28 @@ class HopController final : public Controller {
         if (standing || time_ >= kLongestFlight) enter(kLand, now);
         break;
       case kLand:
-        if (time_ >= land_s_ && standing) enter(kCrouch, now);
+        if (time_ >= land_s_ && standing) rest_or_go_on(now);
         break;
     }
   }
 
-  // sx and sv are of a frame that goes along with the ground.
-  void add_centre(std::vector<Goal>& goals, const Eigen::Vector3d& direction, double kd, double frequency,
-                  double sx, double sv) const {
-    goals.push_back({centre_of_mass_weights(body_.mass, direction, body_.dimension()), frequency * kd, kd,
-                     sx + direction.dot(carried_), sv + direction.dot(ground_)});
-  }
-
-  // Turns the body upright, and its face towards the heading when asked.
-  void add_upright(std::vector<Goal>& goals, const Eigen::VectorXd& x, double scale) const {
-    if (upright_ == 0) return;
-    const Eigen::Matrix3d R = best_rotation(body_.mass, body_.rest, x);
-    Eigen::Vector3d rate = kUprightFrequency * (R * Eigen::Vector3d::UnitY()).cross(Eigen::Vector3d::UnitY());
-    const Eigen::Vector3d front = R * Eigen::Vector3d::UnitZ();
-    const double yaw = std::atan2(front.x(), front.z());
-    const double wanted = face_heading_ ? heading_ : 0;
-    rate.y() = std::clamp(kUprightFrequency * std::remainder(wanted - yaw, 2 * std::numbers::pi), -2.0, 2.0);
-    const Eigen::Matrix3d inertia = inertia_tensor(body_.mass, x);
-    const bool planar = body_.dimension() == 2;
-    const double kd = std::sqrt(scale * upright_ * (planar ? inertia(2, 2) : inertia.trace() / 3));
-    for (int axis = planar ? 2 : 0; axis < 3; ++axis) {
-      const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
-      goals.push_back({spin_weights(body_.mass, x, direction), 0, kd, 0, rate[axis]});
+  // Height and velocity are of a frame that goes along with the ground.
+  void add_centre(BodyGoals& goals, double weight, double frequency, double height,
+                  const Eigen::Vector3d& velocity) const {
+    for (const Eigen::Vector3d& direction : {up(), way_.forward, sideways()}) {
+      const bool upward = direction.y() != 0;
+      goals.centre(direction, weight_ * weight, upward ? frequency : 0, upward ? height + carried_.y() : 0,
+                   direction.dot(velocity + ground_));
     }
   }
 
   ControlledBody body_;
-  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_;
-  Eigen::Vector3d forward_;
-  bool face_heading_ = false;
-  double heading_ = 0, take_off_ = 0, speed_ = 0;
-  Eigen::Vector3d rest_centre_;
+  Course course_;
+  long count_;
+  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_, turn_;
+  bool face_heading_;
+  double take_off_, flight_s_;
+  double stride_ = 0;     // length of a hop, m
   double rest_rise_ = 0;  // of the centre of mass above the lowest vertex at rest, m
 
   Phase phase_ = kLand;  // a body may start in the air; one that stands crouches at once
@@ -233,18 +243,25 @@ class HopController final : public Controller {
   // Velocity of the ground when it was touched last (m/s), and how far it would have gone with it (m). Places
   // are kept without the latter.
   Eigen::Vector3d ground_ = Eigen::Vector3d::Zero(), carried_ = Eigen::Vector3d::Zero();
+  bool begun_ = false, arrived_ = false;
+  long hops_ = 0;
+  double yaw_ = 0;  // where it looks while it stands, when it does not face its way
+  Course::Way way_ = {Eigen::Vector3d::UnitX(), 0, 0};  // when the phase began
 };
 
 }  // namespace
 
 Schema hop_controller_schema() {
-  return object("Hops along a heading: crouch, thrust, flight, land.")
-      .field("heading_deg", heading_schema())
+  return add_course(object("Hops along a course: crouch, thrust, flight, land. At its end, and after `count` "
+                           "hops, it stands."))
+      .field("count", integer("Number of hops; without it there is no end.").at_least(1))
       .field("height",
              number("Rise of the centre of mass after take-off.").unit("m").above(0).initially(0.25))
       .field("pace", number("Average forward speed.").unit("m/s").at_least(0).initially(0.6))
       .field("face_heading",
              boolean("Turn the front of the character (+z at rest) towards the heading.").initially(false))
+      .field("turn_deg",
+             number("Turn about the vertical during each hop, to the left.").unit("°").initially(0))
       .field("crouch_depth", number("Depth of the crouch as a share of the body's height.")
                                  .at_least(0)
                                  .at_most(0.5)
