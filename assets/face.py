@@ -61,10 +61,11 @@ class Face:
             triangles = triangles[:, ::-1]
         return vertices, triangles
 
-    def eye(self, u, v, width, height, bulge, turn=0.0, look=(0.0, 0.0), pupil=0.62, lid=None):
+    def eye(self, u, v, width, height, bulge, turn=0.0, look=(0.0, 0.0), pupil=0.62, lid=None, around=48):
         """Parts of an eye about (u, v) with half axes `width` and `height`: white, iris, pupil and two highlights.
 
         look: where the iris stands, as parts of the half axes. pupil: half width of the iris as a part of the eye's.
+        around: vertices of the rings, a measure of fineness.
         lid: (height, slope): the part `lid` covers what is above that height (as a part of `height`), falling by the slope.
         """
         cos, sin = np.cos(turn), np.sin(turn)
@@ -76,16 +77,16 @@ class Face:
         k = width / 0.1  # sizes were found for an eye of half width 0.1 m
         iu, iv = u + look[0] * width, v + look[1] * height
         ia, ib = pupil * width, pupil * height
-        parts = [("eye_white", *self.dome(ellipse(u, v, width, height, turn), bulge, sink=0.004 * k, rings=12)),
-                 ("iris", *self.dome(ellipse(iu, iv, ia, ib), 0.0035 * k, base, 8.0, 0.003 * k, 10)),
-                 ("pupil", *self.dome(ellipse(iu, iv, 0.66 * ia, 0.66 * ib), 0.0065 * k, base, 8.0, -0.002 * k, 8)),
+        parts = [("eye_white", *self.dome(ellipse(u, v, width, height, turn), bulge, sink=0.004 * k, rings=12, around=around)),
+                 ("iris", *self.dome(ellipse(iu, iv, ia, ib), 0.0035 * k, base, 8.0, 0.003 * k, 10, around)),
+                 ("pupil", *self.dome(ellipse(iu, iv, 0.66 * ia, 0.66 * ib), 0.0065 * k, base, 8.0, -0.002 * k, 8, around)),
                  ("eye_white", *self.dome(ellipse(iu - 0.34 * ia, iv + 0.42 * ib, 0.31 * ia, 0.29 * ib), 0.0095 * k, base,
-                                          4.0, -0.004 * k, 5, 24)),
+                                          4.0, -0.004 * k, 5, around // 2)),
                  ("eye_white", *self.dome(ellipse(iu + 0.36 * ia, iv - 0.40 * ib, 0.14 * ia, 0.12 * ib), 0.0095 * k, base,
-                                          4.0, -0.004 * k, 4, 16))]
+                                          4.0, -0.004 * k, 4, around // 3))]
         if lid:
             parts.append(("lid", *self.dome(cap(u, v, 1.05 * width, 1.05 * height, *lid), 0.016 * k, base, 6.0,
-                                            0.006 * k, 12, 64)))
+                                            0.006 * k, 12, around + 16)))
         return parts
 
 

@@ -139,7 +139,10 @@ def surface(shape, low, high, cell, rounds=12):
 def paint(shape, vertices, triangles, names, value, name, of=None):
     """Gives triangles (of the part `of`, or all) where value(points) < 0 the part `name`, and cuts the surface along the
     border. Returns vertices, triangles and names."""
-    length = np.linalg.norm(vertices[triangles[:, 0]] - vertices[triangles[:, 1]], axis=1).mean()
+    ends = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    lengths = np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1)
+    length, shortest = lengths.mean(), np.full(len(vertices), np.inf)  # of all edges, and of those of each vertex
+    np.minimum.at(shortest, ends[:, 0], lengths)
     v = value(vertices)
     # Vertices near the border move onto it, so that no slivers are cut.
     near = np.flatnonzero(np.abs(v) < length)
@@ -150,7 +153,7 @@ def paint(shape, vertices, triangles, names, value, name, of=None):
         g -= np.einsum("ij,ij->i", g, n)[:, None] * n
         slope = np.einsum("ij,ij->i", g, g)
         move = -(v[near] / np.maximum(slope, 1e-12))[:, None] * g
-        close = (np.linalg.norm(move, axis=1) < 0.3 * length) & (slope > 1e-4)
+        close = (np.linalg.norm(move, axis=1) < 0.3 * shortest[near]) & (slope > 1e-4)
         vertices = vertices.copy()
         vertices[near[close]] = project(shape, p[close] + move[close], length)
         v = value(vertices)
@@ -158,7 +161,7 @@ def paint(shape, vertices, triangles, names, value, name, of=None):
     v[near] = 0.0
     side = np.sign(v).astype(int)
 
-    vertices, new, middle = list(vertices), {}, len(vertices)
+    vertices, new = list(vertices), {}
 
     def cut(a, b):
         key = (min(a, b), max(a, b))
@@ -197,9 +200,7 @@ def paint(shape, vertices, triangles, names, value, name, of=None):
             else:
                 emit(p, b, q, s[1], old)
                 emit(b, c, q, s[1], old)
-    vertices = np.array(vertices)
-    vertices[middle:] = project(shape, vertices[middle:], length, 2)
-    return vertices, np.array(out), np.array(labels, dtype=object)
+    return np.array(vertices), np.array(out), np.array(labels, dtype=object)
 
 
 def chart(shape, origin, right, up):

@@ -1,0 +1,111 @@
+"""Crusty, a slice of toast of 1 m on two short legs, with a headband and running shoes. It looks to +z and stands on y = 0,
+its feet at x = -0.2 and 0.2 m. `python3 make.py` writes crusty.glb beside this file; `--check` compares instead."""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+import character
+import generator
+import sculpt
+from face import Face, ellipse
+
+CELL = 0.0128  # m
+HALF = 0.15  # half thickness of the slice
+LOOKS = {
+    "crust": ((0.36, 0.13, 0.03), 0.45), "crumb": ((0.84, 0.60, 0.30), 0.6), "band": ((0.62, 0.03, 0.03), 0.35),
+    "shoe": ((0.62, 0.03, 0.03), 0.25), "sole": ((0.88, 0.86, 0.80), 0.3), "eye_white": ((0.92, 0.92, 0.90), 0.05),
+    "iris": ((0.06, 0.15, 0.32), 0.05), "pupil": ((0.008, 0.006, 0.005), 0.05), "brow": ((0.13, 0.04, 0.01), 0.4),
+    "mouth": ((0.16, 0.02, 0.02), 0.3), "teeth": ((0.92, 0.90, 0.84), 0.1), "blush": ((0.85, 0.33, 0.16), 0.5),
+}
+PORES = np.random.Generator(np.random.PCG64(7)).random((70, 4))
+
+
+def slice_(p):
+    """Distance of the slice's outline, seen from the front."""
+    x, y = np.hypot(p[:, 0], 0.03), p[:, 1]
+    q = np.stack([x - 0.325, np.abs(y - 0.575) - 0.345], axis=1) + 0.09
+    loaf = np.linalg.norm(np.maximum(q, 0), axis=1) + np.minimum(q.max(axis=1), 0) - 0.09
+    return sculpt.union(loaf, np.hypot(x - 0.195, y - 0.795) - 0.195, 0.10)
+
+
+def pores():
+    """Balls (#P by 4) that leave dents in both cut sides, away from the face and the band."""
+    found = []
+    for a, b, c, d in PORES:
+        x, y, side, r = 0.52 * a - 0.26, 0.32 + 0.56 * b, np.sign(c - 0.5), 0.012 + 0.012 * d
+        if abs(y - 0.75) > 0.10 and (side < 0 or np.hypot(x / 0.21, (y - 0.52) / 0.24) > 1):
+            found.append((x, y, side * (HALF - 0.008), r))
+    return np.array(found)
+
+
+DENTS = pores()
+
+
+def dents(p):
+    near = np.abs(p[:, 2]) > HALF - 0.06
+    d = np.full(len(p), 0.05)
+    d[near] = np.min(np.linalg.norm(p[near][:, None] - DENTS[None, :, :3], axis=2) - DENTS[:, 3], axis=1)
+    return d
+
+
+def bread(p):
+    outline = slice_(p)
+    inner = np.clip((-outline - 0.035) / 0.03, 0, 1)
+    return sculpt.slab(outline, np.abs(p[:, 2]) - HALF + 0.012 * inner**2 * (3 - 2 * inner), 0.045)
+
+
+def band(p):
+    height = np.abs(p[:, 1] - 0.755 + 0.10 * p[:, 0]**2) - 0.040
+    return sculpt.slab(height, bread(p) - 0.016, 0.014)
+
+
+def feet(p):
+    q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], axis=1)
+    shoe = sculpt.union(sculpt.ellipsoid(q, (0.205, 0.045, 0.115), (0.125, 0.105, 0.150)),
+                        sculpt.ellipsoid(q, (0.195, 0.050, -0.055), (0.110, 0.120, 0.130)), 0.08)
+    return q, sculpt.common(shoe, -p[:, 1], 0.03)
+
+
+def shape(p):
+    q, shoe = feet(p)
+    leg = sculpt.capsule(q, (0.195, 0.15, -0.03), (0.195, 0.35, -0.01), 0.083)
+    legs = sculpt.union(leg, shoe, 0.03)
+    return sculpt.union(sculpt.union(sculpt.minus(bread(p), dents(p), 0.012), band(p), 0.008), legs, 0.06)
+
+
+def make():
+    vertices, triangles = sculpt.surface(shape, (-0.46, -0.05, -0.30), (0.46, 1.06, 0.34), CELL)
+    names = np.full(len(triangles), "crust", dtype=object)
+    body = sculpt.paint(shape, vertices, triangles, names,
+                        lambda p: np.maximum(slice_(p) + 0.058, 0.08 - np.abs(p[:, 2])), "crumb")
+    body = sculpt.paint(shape, *body, lambda p: np.maximum(np.abs(p[:, 1] - 0.755 + 0.10 * p[:, 0]**2) - 0.050,
+                                                           0.7 - p[:, 1]), "band")
+    body = sculpt.paint(shape, *body, lambda p: p[:, 1] - 0.125 - 0.25 * p[:, 2] * (p[:, 2] < 0), "shoe")
+    body = sculpt.paint(shape, *body, lambda p: p[:, 1] - 0.040, "sole")
+
+    face, parts = Face(sculpt.chart(bread, (0, 0.53, 0.5), (1, 0, 0), (0, 1, 0))), []
+    for side in (-1, 1):
+        parts += face.eye(0.108 * side, 0.065, 0.082, 0.102, 0.034, -0.06 * side, look=(-0.10 * side, 0.0))
+        t = np.linspace(-1, 1, 25)
+        parts.append(("brow", *face.tube((0.112 + 0.070 * t) * side, 0.172 + 0.014 * t - 0.006 * t**2,
+                                         0.017 * np.sqrt(np.maximum(1 - t**4, 0)), lift=0.012)))
+        parts.append(("blush", *face.dome(ellipse(0.195 * side, -0.065, 0.045, 0.030), 0.0022, None, 6.0, 0.003, 8)))
+
+    def mouth(rho, psi):
+        x, y = 0.095 * rho * np.cos(psi), rho * np.sin(psi)
+        return x, -0.115 + y * np.where(y > 0, 0.016, 0.070) + 0.035 * (x / 0.095)**2 + 0.12 * x
+
+    def teeth(rho, psi):
+        x, y = 0.070 * rho * np.cos(psi), rho * np.sin(psi)
+        return x, -0.114 + y * np.where(y > 0, 0.008, 0.026) + 0.035 * (x / 0.095)**2 + 0.12 * x
+
+    parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
+    parts.append(("teeth", *face.dome(teeth, 0.008, None, 8.0, 0.001, 8, 40)))
+    return {"crusty.glb": character.glb("crusty", "assets/crusty/make.py", body, parts, LOOKS)}
+
+
+if __name__ == "__main__":
+    generator.main(make, __file__, "Makes crusty.glb.")
