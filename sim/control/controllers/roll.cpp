@@ -17,6 +17,7 @@ constexpr double kLearning = 0.5;  // share of a missing speed that a second of 
 constexpr double kLargestLearnt = 1;   // of the wanted speed
 constexpr double kLineFrequency = 1;   // share of a sideways offset that a second of rolling takes back
 constexpr double kLargestSteer = 0.3;  // sideways speed, of the wanted one
+constexpr double kHoldFrequency = 2;   // speed per distance from the end of the way, 1/s
 constexpr double kSlow = 0.2;          // of the wanted speed: nearly standing
 
 class RollController final : public Controller {
@@ -35,19 +36,19 @@ class RollController final : public Controller {
     time_ += body_.h;
     const Eigen::Vector3d centre = centre_of_mass(body_.mass, now.x), v = centre_of_mass(body_.mass, now.v);
     const Course::Way way = course_.way(centre, body_.height, now.others);
-    if (course_.ends(way) && v.norm() < kSlow * speed_) arrived_ = true;
-    const double wanted =
-        arrived_ ? 0 : std::min(speed_ * std::min(1.0, time_ / ramp_s_), last_speed(way.left));
-    // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where it falls
-    // short.
-    learnt_ += kLearning * body_.h * (wanted - way.forward.dot(v));
-    learnt_ = std::clamp(learnt_, -kLargestLearnt * wanted, kLargestLearnt * wanted);
+    arrived_ = arrived_ || (course_.ends(way) && v.norm() < kSlow * speed_);
     const double steer =
         std::clamp(-kLineFrequency * way.offset, -kLargestSteer * speed_, kLargestSteer * speed_);
+    const Eigen::Vector3d aside = Eigen::Vector3d::UnitY().cross(way.forward);
+    const Eigen::Vector3d wanted = wanted_speed(way.left) * way.forward + steer * aside;
+    // Goals are tracked with a bias (they are weighed against the regulariser, and slopes pull): ask for more
+    // where it falls short.
+    learnt_ += kLearning * body_.h * (wanted - Eigen::Vector3d(v.x(), 0, v.z()));
+    if (learnt_.norm() > kLargestLearnt * speed_) learnt_ *= kLargestLearnt * speed_ / learnt_.norm();
     const double ground = lowest_height(now.x, body_.dimension());
     BodyGoals goals(body_, now.x);
-    goals.centre(way.forward, weight_, 0, 0, wanted + learnt_);
-    goals.centre(Eigen::Vector3d::UnitY().cross(way.forward), weight_, 0, 0, steer);
+    for (const Eigen::Vector3d& direction : {way.forward, aside})
+      goals.centre(direction, weight_, 0, 0, direction.dot(wanted + learnt_));
     goals.centre(Eigen::Vector3d::UnitY(), kHeightWeight * weight_, kHeightFrequency, ground + rest_rise_, 0);
     return goals.take();
   }
@@ -56,21 +57,24 @@ class RollController final : public Controller {
   std::string phase() const override { return !rolling_ ? "flight" : arrived_ ? "stand" : "roll"; }
 
   Eigen::VectorXd state() const override {
-    Eigen::VectorXd state(4 + Course::kStateSize);
+    Eigen::VectorXd state(6 + Course::kStateSize);
     state << rolling_, time_, learnt_, arrived_, course_.state();
     return state;
   }
   void restore(const Eigen::VectorXd& state) override {
     rolling_ = state[0] != 0;
     time_ = state[1];
-    learnt_ = state[2];
-    arrived_ = state[3] != 0;
+    learnt_ = state.segment<3>(2);
+    arrived_ = state[5] != 0;
     course_.restore(state.tail<Course::kStateSize>());
   }
 
  private:
-  // From which it comes to a stand within `left` when it slows down as fast as it speeds up.
-  double last_speed(double left) const { return std::sqrt(2 * speed_ / ramp_s_ * left); }
+  // Rises while it sets out, and falls as fast towards the end of the way.
+  double wanted_speed(double left) const {
+    const double braking = std::min(std::sqrt(2 * speed_ / ramp_s_ * left), kHoldFrequency * left);
+    return std::min(speed_ * std::min(1.0, time_ / ramp_s_), braking);
+  }
 
   ControlledBody body_;
   Course course_;
@@ -78,8 +82,8 @@ class RollController final : public Controller {
   double rest_rise_;  // of the centre of mass above the lowest vertex at rest, m
 
   bool rolling_ = false, arrived_ = false;
-  double time_ = 0;    // spent on the ground, s
-  double learnt_ = 0;  // added to the speed that is asked for, m/s
+  double time_ = 0;                                   // spent on the ground, s
+  Eigen::Vector3d learnt_ = Eigen::Vector3d::Zero();  // added to the velocity that is asked for, m/s
 };
 
 }  // namespace
