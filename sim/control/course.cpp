@@ -9,7 +9,7 @@
 namespace vivify::sim {
 namespace {
 
-constexpr double kTolerance = 0.1;       // of the body's width: how near to a place is there
+constexpr double kTolerance = 0.15;      // of the body's width: how near to a place is there
 constexpr double kAlongPlane = 0.99;     // least share of a heading that lies in the plane
 constexpr double kLeastDistance = 1e-9;  // of the width: no direction can be told below
 

@@ -79,7 +79,7 @@ class HopController final : public Controller {
       case kThrust: {
         const double ramp = smooth_step(time_ / (0.5 * thrust_s_));
         if (turn_ != 0 && !planar()) rate.y() = ramp * turn_ / flight_s_;
-        add_centre(goals, 1, 0, 0, ramp * (wanted_take_off() + learnt_));
+        add_centre(goals, 1, 0, 0, ramp * (wanted_take_off() + asked_on_top()));
         goals.spin(upright_, rate);
         break;
       }
@@ -130,13 +130,22 @@ class HopController final : public Controller {
   // Velocity of the centre of mass over the ground at take-off: the asked height and pace, in equal hops to
   // where the way ends, and back to the line of travel.
   Eigen::Vector3d wanted_take_off() const {
-    double reach = stride_;
-    if (std::isfinite(way_.left) && stride_ > 0)
-      reach = way_.left / std::max(1.0, std::ceil(way_.left / stride_ - kExtra));
-    const double speed = reach / (flight_s_ + 0.25 * thrust_s_);
     const double back = std::clamp(-kLineGain * way_.offset / flight_s_, -kLargestSteer * take_off_,
                                    kLargestSteer * take_off_);
+    const double speed = hop_share() * stride_ / (flight_s_ + 0.25 * thrust_s_);
     return take_off_ * up() + speed * way_.forward + back * sideways();
+  }
+
+  // Length of the next hop over the usual one.
+  double hop_share() const {
+    const double hops = stride_ > 0 ? way_.left / stride_ : std::numeric_limits<double>::infinity();
+    return std::isfinite(hops) ? hops / std::max(1.0, std::ceil(hops - kExtra)) : 1;
+  }
+
+  // What a hop falls short grows with its length.
+  Eigen::Vector3d asked_on_top() const {
+    const double share = hop_share();
+    return {share * learnt_.x(), learnt_.y(), share * learnt_.z()};
   }
 
   // Turns towards where the body shall look.
@@ -150,7 +159,7 @@ class HopController final : public Controller {
   // take-off fell short.
   void learn(const Observation& now) {
     const Eigen::Vector3d missed = wanted_take_off() + ground_ - centre_of_mass(body_.mass, now.v);
-    learnt_ += kLearning * missed;
+    learnt_ += kLearning * hop_share() * missed;
     const double largest = kLargestLearnt * wanted_take_off().norm();
     if (learnt_.norm() > largest) learnt_ *= largest / learnt_.norm();
   }
