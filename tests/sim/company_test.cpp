@@ -1,7 +1,9 @@
 // Controlled characters and passive bodies together, on colliders that move.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "bench/bodies.h"
@@ -170,6 +172,46 @@ TEST(Company, AHopperPushesASoftBallOneMetre) {
   EXPECT_NEAR(centre(world, 1).y(), 0.2, 0.04) << "the ball lies on the ground";
   EXPECT_GT(watch.smallest_element, 0.3);
   EXPECT_LT(watch.penetration, 0.005);
+}
+
+// Without a floor: a box thrown against a wall, another box or onto one. In the air it wants nothing.
+TEST(Company, WhatPushesSidewaysCarriesNobody) {
+  struct Case {
+    Eigen::Vector3d place, velocity;  // of the hopper beside what it meets
+    bool stands;
+  };
+  for (const Case& c : {Case{{-0.52, 0, 0}, {2, 0, 0}, false}, Case{{0, 0.52, 0}, {0, -2, 0}, true}}) {
+    BodyInput thrown = moved(hopper("{type: roll}"), "thrown", c.place), met = hopper("{type: rest}");
+    met.name = "met";
+    thrown.velocity = c.velocity;
+    World world({thrown, met}, {}, {{0, -9.81, 0}, 0.01});
+    double pushed = 0;
+    bool stood = false;
+    for (int step = 0; step < 30; ++step) {
+      world.step();
+      const auto record = world.records().end() - 2;
+      stood |= record->phase != "flight";
+      for (const PairMemory& touching : world.touching()) pushed += touching.normal_force;
+    }
+    EXPECT_GT(pushed, world.body(0).model().weight) << "they met";
+    EXPECT_EQ(stood, c.stands);
+  }
+  std::vector<Collider> wall;
+  ShapePlace place;
+  place.pose.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  place.pose.translation().x() = 0.3;
+  wall.emplace_back("wall", make_collider_shape(settings(collider_shape_schema(), "{type: plane}"), place),
+                    1.0);
+  BodyInput thrown = hopper("{type: roll}");
+  thrown.velocity = {2, 0, 0};
+  World world({thrown}, std::move(wall), {{0, -9.81, 0}, 0.01});
+  int touched = 0;
+  for (int step = 0; step < 30; ++step) {
+    world.step();
+    touched += world.records().back().contacts;
+    EXPECT_EQ(world.records().back().phase, "flight") << step;
+  }
+  EXPECT_GT(touched, 0);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
 
 #include "sim/contact/contact_points.h"
 #include "sim/contact/contact_set.h"
@@ -205,6 +207,37 @@ TEST(ContactPoints, HalfOfThemStandOnTheGroundAndAllAreSpread) {
     EXPECT_LE(nearest, 0.3);
   }
   EXPECT_EQ(select_contact_points(mesh.V, vertices, weights, 3, 1000).size(), mesh.V.rows());
+}
+
+TEST(Ground, IsWhatPushesUpwards) {
+  const double slope = 60 * std::numbers::pi / 180;
+  const Eigen::Vector3d belt(2, 0, 0);
+  const auto facing = [&](const Eigen::Vector3d& normal) {
+    ShapePlace place;
+    place.pose.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), normal).toRotationMatrix();
+    return Collider("plane", make_collider_shape(settings(collider_shape_schema(), "{type: plane}"), place),
+                    1, {}, belt);
+  };
+  std::vector<Collider> colliders;
+  colliders.push_back(facing({0, 1, 0}));
+  colliders.push_back(facing({0, 0, 1}));  // a wall
+  colliders.push_back(facing({0, std::cos(slope), std::sin(slope)}));
+  colliders.push_back(facing({0, -1, 0}));  // a ceiling
+  std::vector<ContactMemory> memory;
+  for (int c = 0; c < 4; ++c) memory.push_back({true, Eigen::Vector3d::Zero(), 3.0 + c, c});
+  memory.push_back({false, Eigen::Vector3d::Zero(), 0, -1});
+  const auto under = [&](std::vector<int> points) {
+    std::vector<ContactMemory> some;
+    for (const int i : points) some.push_back(memory[static_cast<std::size_t>(i)]);
+    return ground_under(some, colliders, 0, 0.01);
+  };
+  EXPECT_NEAR(under({0, 1, 2, 3, 4}).load, 3 + 5 * std::cos(slope), 1e-12);
+  EXPECT_NEAR(under({2}).load, 5 * std::cos(slope), 1e-12);
+  ASSERT_TRUE(under({0, 1, 2}).velocity);
+  EXPECT_LE((*under({0, 1, 2}).velocity - belt).norm(), 1e-12);
+  EXPECT_EQ(under({3, 4}).load, 0);
+  EXPECT_FALSE(under({3, 4}).velocity);
 }
 
 }  // namespace
