@@ -5,18 +5,17 @@ square openings, and the seam is pulled onto the zero set of a smooth union of t
 flows from one to the other. The axis is x = z = 0, the foot stands on y = 0, the face looks to +z, the handle is at +x.
 """
 
+import dataclasses
+
 import numpy as np
 
-from face import Face, ellipse
+from face import Face, cap, ellipse, merge
 from surface import quads_to_triangles, signed_volume
 
 AROUND = 144          # vertices of a full ring; 16 * 9, so that discs can be closed by halving it four times
 BLOCK = 6             # quads along each side of the openings for the handle
-BLEND = 0.085         # width of the smooth union of wall and handle (m)
-HANDLE_RADII = (0.045, 0.058)  # half thickness of the handle in its plane and across it (m)
-BELLY = 0.59          # radius that turns distances on the face into angles (m)
-FACE_HEIGHT = 0.47    # height of the middle of the face (m)
 
+# Of the cup that the designs are stretched from:
 PROFILE = np.array([  # control points (radius, height) of a uniform cubic B-spline, metres
     (-0.10, 0.030), (0.00, 0.030), (0.10, 0.030), (0.19, 0.030), (0.25, 0.030), (0.282, 0.024), (0.292, 0.000),
     (0.305, 0.000), (0.320, 0.000), (0.335, 0.000), (0.350, 0.000), (0.365, 0.000), (0.384, 0.002), (0.386, 0.026),
@@ -31,6 +30,53 @@ HANDLE = np.array([  # control points (x, y) of the handle's middle line
 ])
 
 
+
+
+@dataclasses.dataclass
+class Mood:
+    """The expression of the face."""
+    iris: float = 1.0          # size of the iris, and of the pupil
+    brow_lift: float = 0.0     # m
+    brow_tilt: float = 0.012   # how much higher the inner end of a brow is than its middle (m); negative: stern
+    lid: tuple | None = None   # (height, slope) of the upper lids, see face.Face.eye
+    mouth: tuple = (0.088, 0.092, 0.030)  # half width, depth and how far the corners are pulled up (m)
+
+
+@dataclasses.dataclass
+class Design:
+    """A cup: the one above with its heights times `height` and, at each height, its radii times a factor."""
+    height: float = 1.0
+    radii: tuple = ((0.0, 1.0), (1.0, 1.0))  # (height, factor) of the original cup; linear in between
+    reach: float = 1.0         # how far the handle stands off the wall, as a part of the original's
+    thickness: float = 1.0     # of the handle
+    face: float = 1.0          # size of the face
+    face_height: float = 0.47  # of its middle (m)
+    belly: float = 0.59        # radius that turns distances on the face into angles (m)
+    mood: Mood = dataclasses.field(default_factory=Mood)
+
+    def factor(self, y):
+        return np.interp(y, *np.array(self.radii).T)
+
+    @property
+    def blend(self):
+        """Width of the smooth union of wall and handle (m)."""
+        return 0.085 * self.thickness
+
+    @property
+    def handle_radii(self):
+        """Half thickness of the handle in its plane and across it (m)."""
+        return 0.045 * self.thickness, 0.058 * self.thickness
+
+    def profile(self):
+        r, y = PROFILE.T
+        return np.stack([r * self.factor(y), y * self.height], axis=1)
+
+    def handle(self):
+        x, y = HANDLE.T
+        wall = 0.59
+        return np.stack([wall * self.factor(y) + (x - wall) * np.where(x > wall, self.reach, 1), y * self.height], axis=1)
+
+
 def bspline(control, per_span):
     """Points of the uniform cubic B-spline (#P by 2), `per_span` per span, both ends included."""
     t = np.arange(per_span) / per_span
@@ -43,8 +89,9 @@ def bspline(control, per_span):
 class Profile:
     """The profile curve with arc length, from the middle of the underside to the middle of the tea."""
 
-    def __init__(self):
-        self.points = bspline(PROFILE, 64)
+    def __init__(self, design):
+        self.design = design
+        self.points = bspline(design.profile(), 64)
         self.points[0, 0] = self.points[-1, 0] = 0.0
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         self.length = np.concatenate([[0.0], np.cumsum(steps)])
@@ -52,7 +99,7 @@ class Profile:
         self.normals = np.gradient(self.points, self.length, axis=0)[:, ::-1] * (1, -1)  # right of the way along it
         self.normals /= np.linalg.norm(self.normals, axis=1)[:, None]
         outer = self.points[:self.top]
-        self.foot_end = int(np.argmax(outer[:, 1] > 0.055))
+        self.foot_end = int(np.argmax(outer[:, 1] > 0.055 * design.height))
 
     def at(self, s):
         """Points (radius, height) at arc lengths s."""
@@ -63,21 +110,25 @@ class Profile:
         return n / np.linalg.norm(n, axis=-1, keepdims=True)
 
     def outside(self, height):
-        """Arc length at which the outer wall, above the foot, has this height."""
+        """Arc length at which the outer wall, above the foot, has this height (of the original cup)."""
+        height = height * self.design.height
         part = slice(self.foot_end, self.top + 1)
         return float(np.interp(height, self.points[part, 1], self.length[part]))
 
     def inside(self, height):
-        """Arc length at which the inner wall has this height."""
+        """Arc length at which the inner wall has this height (of the original cup)."""
+        height = height * self.design.height
         part = slice(self.top, len(self.points))
         return float(np.interp(-height, -self.points[part, 1], self.length[part]))
 
     def radius_on_flat(self, radius, underside):
-        """Arc length at which the underside (or the tea) has this radius."""
+        """Arc length at which the underside (or the tea) has this radius (of the original cup)."""
+        factor = self.design.factor(0.03 if underside else 0.828)
+        radius = radius * factor
         if underside:
-            n = int(np.argmax(self.points[:, 1] < 0.029))
+            n = int(np.argmax(self.points[:, 1] < 0.029 * self.design.height))
             return float(np.interp(radius, self.points[:n, 0], self.length[:n]))
-        n = int(np.argmax(self.points[::-1, 0] > 0.47))
+        n = int(np.argmax(self.points[::-1, 0] > 0.47 * factor))
         return float(self.length[-1] - np.interp(radius, self.points[::-1, 0][:n], self.length[-1] - self.length[::-1][:n]))
 
 
@@ -98,12 +149,13 @@ class Shape:
 
     def __init__(self, profile):
         self.wall = profile.points[profile.foot_end:profile.top:4]
-        self.middle = bspline(HANDLE, 32)
+        self.middle = bspline(profile.design.handle(), 32)
+        self.radii, self.blend = profile.design.handle_radii, profile.design.blend
 
     def parts(self, p):
         wall, _ = polyline_distance(np.stack([np.hypot(p[:, 0], p[:, 2]), p[:, 1]], axis=1), self.wall)
         across, _ = polyline_distance(p[:, :2], self.middle)
-        a, b = HANDLE_RADII
+        a, b = self.radii
         q = np.hypot(across / a, p[:, 2] / b)
         slope = np.hypot(across / a**2, p[:, 2] / b**2)
         handle = np.where(slope > 1e-9, q * (q - 1) / np.maximum(slope, 1e-9), -a)
@@ -111,8 +163,8 @@ class Shape:
 
     def __call__(self, p):
         wall, handle = self.parts(p)
-        h = np.maximum(BLEND - np.abs(wall - handle), 0) / BLEND
-        return np.minimum(wall, handle) - h**3 * BLEND / 6
+        h = np.maximum(self.blend - np.abs(wall - handle), 0) / self.blend
+        return np.minimum(wall, handle) - h**3 * self.blend / 6
 
     def project(self, p, steps=4):
         """Moves points onto the surface along the gradient (Newton)."""
@@ -154,8 +206,9 @@ def disc(first, radii, height, offset):
 
 def body(profile):
     """Vertices, triangles and the part name of each triangle of the closed body."""
-    shape = Shape(profile)
-    upper, lower, half = profile.outside(0.684), profile.outside(0.256), 0.076
+    shape, design = Shape(profile), profile.design
+    upper, lower = profile.outside(0.684), profile.outside(0.256)
+    half = 0.076 * design.factor(0.47)  # openings are square
     # Arc length up to which rings are laid, number of rings, part.
     plan = [
         (profile.radius_on_flat(0.21, underside=True), 0, "foot"),
@@ -214,7 +267,7 @@ def body(profile):
     centre = len(middle) // 2
     start, end = int(np.argmin(wall[:centre])), centre + int(np.argmin(wall[centre:]))
     along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
-    free = np.linspace(along[start] + 0.105, along[end] - 0.105, 27)
+    free = np.linspace(along[start] + 0.105 * design.thickness, along[end] - 0.105 * design.thickness, 27)
     corner = np.arange(count) * 2 * np.pi / count
     handle_rings = []
     for s in free:
@@ -224,7 +277,7 @@ def body(profile):
         normal = np.array([-t[1], t[0], 0])  # in the plane of the handle; at its lower end this points upwards
         # Vertex 0 of a loop is the corner with low j (below) and low i (z < 0); i grows along the loop first.
         angle = corner + np.pi * 1.25
-        a, b = HANDLE_RADII
+        a, b = shape.radii
         handle_rings.append(np.array([c[0], c[1], 0]) + a * np.sin(angle)[:, None] * normal
                             + b * np.cos(angle)[:, None] * np.array([0, 0, 1]))
     blend_rings = 3
@@ -247,10 +300,10 @@ def body(profile):
     j_low, j_high = blocks[0] - 8, blocks[1] + BLOCK + 1
     on_wall[j_low * AROUND:(j_high + 1) * AROUND] = True
     on_wall[base:] = True
-    near = on_wall & (vertices[:, 0] > 0.3) & (np.abs(vertices[:, 2]) < 0.3)
+    near = on_wall & (vertices[:, 0] > 0.3 * design.factor(0.47)) & (np.abs(vertices[:, 2]) < 0.3)
     wall_d, handle_d = np.full(len(vertices), 1.0), np.full(len(vertices), -1.0)
     wall_d[near], handle_d[near] = shape.parts(vertices[near])
-    moving = near & (np.abs(wall_d - handle_d) < BLEND * 1.0)
+    moving = near & (np.abs(wall_d - handle_d) < shape.blend)
     moving[low_loop] = moving[high_loop] = True
     moving[sweep_index[:blend_rings + 1]] = moving[sweep_index[-blend_rings - 1:]] = True
     edges = np.unique(np.sort(np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)]), axis=1), axis=0)
@@ -258,7 +311,7 @@ def body(profile):
     edges = edges[moving[edges[:, 0]]]
     degree = np.bincount(edges[:, 0], minlength=len(vertices))
     moving &= degree > 0
-    moving[:base] &= vertices[:base, 1] < 0.817  # the painted rings stay round
+    moving[:base] &= vertices[:base, 1] < 0.817 * design.height  # the painted rings stay round
     ids = np.flatnonzero(moving)
     vertices[ids] = shape.project(vertices[ids], 8)
     for _ in range(40):
@@ -271,10 +324,10 @@ def body(profile):
     names = [part for part in parts for _ in (0, 1)]
     # The two discs: the underside and the tea.
     n = len(vertices)
-    v, f = disc(index(0, np.arange(AROUND)), (0.175, 0.115, 0.06, 0.03), float(rz[0, 1]), n)
+    v, f = disc(index(0, np.arange(AROUND)), np.multiply((0.175, 0.115, 0.06, 0.03), design.factor(0.03)), float(rz[0, 1]), n)
     vertices, triangles, names = np.concatenate([vertices, v]), np.concatenate([triangles, f]), names + ["foot"] * len(f)
     n = len(vertices)
-    v, f = disc(index(len(lengths) - 1, np.arange(AROUND)), (0.41, 0.29, 0.15, 0.07), float(rz[-1, 1]), n)
+    v, f = disc(index(len(lengths) - 1, np.arange(AROUND)), np.multiply((0.41, 0.29, 0.15, 0.07), design.factor(0.828)), float(rz[-1, 1]), n)
     vertices, triangles, names = np.concatenate([vertices, v]), np.concatenate([triangles, f[:, ::-1]]), names + ["tea"] * len(f)
     if signed_volume(vertices, triangles) < 0:
         triangles = triangles[:, ::-1]
@@ -283,22 +336,23 @@ def body(profile):
 
 
 def face_chart(profile):
-    """Chart of the outer wall for face.Face, about the middle of the face."""
-    s0 = profile.outside(FACE_HEIGHT)
+    """Chart of the outer wall for face.Face, about the middle of the face; its metre is `face` metres of the wall."""
+    design = profile.design
+    s0, k = profile.outside(design.face_height), design.face
 
     def frame(u, v):
-        s = s0 + v
+        s = s0 + k * v
         r, y = np.moveaxis(profile.at(s), -1, 0)
         nr, ny = np.moveaxis(profile.normal(s), -1, 0)
-        angle = np.pi / 2 - u / BELLY
+        angle = np.pi / 2 - k * u / design.belly
         cos, sin = np.cos(angle), np.sin(angle)
-        return np.stack([r * cos, y, r * sin], -1), np.stack([nr * cos, ny, nr * sin], -1)
+        return np.stack([r * cos, y, r * sin], -1), k * np.stack([nr * cos, ny, nr * sin], -1)
     return frame
 
 
 def face_parts(profile):
     """List of (part name, vertices, triangles) of everything that is set on the body; each one closed."""
-    face, parts = Face(face_chart(profile)), []
+    face, mood, parts = Face(face_chart(profile)), profile.design.mood, []
     for side in (-1, 1):
         eye_u, eye_v, eye_a, eye_b, eye_h, turn = 0.168 * side, 0.055, 0.098, 0.128, 0.034, -0.10 * side
 
@@ -310,25 +364,30 @@ def face_parts(profile):
 
         look_u, look_v = eye_u - 0.010 * side, eye_v
         parts.append(("eye_white", *face.dome(ellipse(eye_u, eye_v, eye_a, eye_b, turn), eye_h, rings=12)))
-        parts.append(("iris", *face.dome(ellipse(look_u, look_v, 0.077, 0.097), 0.0035, eye_base, 8.0, 0.003, 12)))
-        parts.append(("pupil", *face.dome(ellipse(look_u, look_v, 0.052, 0.067), 0.0065, eye_base, 8.0, -0.002, 10)))
-        parts.append(("eye_white", *face.dome(ellipse(look_u - 0.026, look_v + 0.043, 0.024, 0.028), 0.0095, eye_base, 4.0, -0.004, 6, 24)))
-        parts.append(("eye_white", *face.dome(ellipse(look_u + 0.028, look_v - 0.040, 0.011, 0.012), 0.0095, eye_base, 4.0, -0.004, 5, 16)))
+        parts.append(("iris", *face.dome(ellipse(look_u, look_v, 0.077 * mood.iris, 0.097 * mood.iris), 0.0035, eye_base, 8.0, 0.003, 12)))
+        parts.append(("pupil", *face.dome(ellipse(look_u, look_v, 0.052 * mood.iris, 0.067 * mood.iris), 0.0065, eye_base, 8.0, -0.002, 10)))
+        parts.append(("eye_white", *face.dome(ellipse(look_u - 0.026 * mood.iris, look_v + 0.043 * mood.iris, 0.024 * mood.iris, 0.028 * mood.iris), 0.0095, eye_base, 4.0, -0.004, 6, 24)))
+        parts.append(("eye_white", *face.dome(ellipse(look_u + 0.028 * mood.iris, look_v - 0.040 * mood.iris, 0.011 * mood.iris, 0.012 * mood.iris), 0.0095, eye_base, 4.0, -0.004, 5, 16)))
         parts.append(("blush", *face.dome(ellipse(0.315 * side, -0.085, 0.062, 0.040, 0.1 * side), 0.0022, None, 6.0, 0.003, 8)))
+        if mood.lid:
+            height, slope = mood.lid
+            parts.append(("lid", *face.dome(cap(eye_u, eye_v, 1.05 * eye_a, 1.05 * eye_b, height, slope * side), 0.016,
+                                            eye_base, 6.0, 0.006, 12, 64)))
         t = np.linspace(-1, 1, 25)
         brow_u = 0.168 * side + 0.072 * t
-        brow_v = 0.222 + 0.022 * (1 - t**2) + 0.012 * t * -side
+        brow_v = 0.222 + mood.brow_lift + 0.022 * (1 - t**2) + mood.brow_tilt * t * -side
         parts.append(("brow", *face.tube(brow_u, brow_v, 0.0145 * np.sqrt(np.maximum(1 - t**4, 0)))))
 
-    mouth_a, mouth_b, mouth_v = 0.088, 0.092, -0.088
+    (mouth_a, mouth_b, smile), mouth_v = mood.mouth, -0.088
 
     def mouth(rho, psi):
         x = mouth_a * rho * np.cos(psi)
         y = mouth_b * rho * np.where(np.sin(psi) > 0, 0.16, 1.0) * np.sin(psi)
-        return x, mouth_v + y + 0.030 * (x / mouth_a)**2
+        return x, mouth_v + y + smile * (x / mouth_a)**2
 
     parts.append(("mouth", *face.dome(mouth, 0.0030, None, 10.0, 0.003, 12, 64)))
-    parts.append(("tongue", *face.dome(ellipse(0, mouth_v - 0.056, 0.043, 0.025), 0.0085, None, 3.0, 0.001, 8, 40)))
+    if mouth_b > 0.08:
+        parts.append(("tongue", *face.dome(ellipse(0, mouth_v - 0.056, 0.043, 0.025), 0.0085, None, 3.0, 0.001, 8, 40)))
     return parts
 
 
@@ -339,22 +398,17 @@ LOOKS = {
     "tea": ((0.16, 0.045, 0.008), 0.0, 0.05), "eye_white": ((0.92, 0.92, 0.90), 0.0, 0.05),
     "iris": ((0.17, 0.07, 0.025), 0.0, 0.05), "pupil": ((0.008, 0.006, 0.005), 0.0, 0.05),
     "brow": ((0.07, 0.03, 0.015), 0.0, 0.4), "mouth": ((0.16, 0.02, 0.02), 0.0, 0.3),
-    "tongue": ((0.80, 0.24, 0.20), 0.0, 0.3), "blush": ((0.90, 0.36, 0.30), 0.0, 0.5),
+    "tongue": ((0.80, 0.24, 0.20), 0.0, 0.3), "lid": ((0.30, 0.58, 0.60), 0.0, 0.15), "blush": ((0.90, 0.36, 0.30), 0.0, 0.5),
 }
 BODY_PARTS = ("foot", "porcelain", "gold", "band", "inside", "tea")
 
 
-def make():
+def make(design):
     """All parts for glb_bytes, and the closed body as (vertices, triangles)."""
-    profile = Profile()
+    profile = Profile(design)
     vertices, triangles, names = body(profile)
     vertices = vertices.astype(np.float32).astype(float)
-    parts = {name: (vertices, triangles[names == name]) for name in BODY_PARTS}
-    for name, v, f in face_parts(profile):
-        if name in parts:
-            v0, f0 = parts[name]
-            v, f = np.concatenate([v0, v]), np.concatenate([f0, f + len(v0)])
-        parts[name] = (v, f)
+    parts = merge([(name, vertices, triangles[names == name]) for name in BODY_PARTS] + face_parts(profile))
     out = [{"name": name, "positions": v, "triangles": f, "color": LOOKS[name][0], "metallic": LOOKS[name][1],
             "roughness": LOOKS[name][2]} for name, (v, f) in parts.items()]
     return out, (vertices, triangles)
