@@ -1,0 +1,120 @@
+"""Ace, the ace of spades: a flat card of 0.7 m by 1 m in the plane z = 0, standing on its two lower corners. Its picture,
+on both sides, is the same from the left and from the right. `python3 make.py` writes card.glb and card.png beside this
+file; `--check` compares instead."""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+import files
+import generator
+
+WIDTH, HEIGHT = 0.7, 1.0  # m
+CORNER = 0.045  # cut off the corners (m); a coarse shell keeps straight cuts
+FOOT, ARCH = 0.24, 0.055  # where the feet end (m from the middle), and the height of the arch between them
+COLUMNS, ROWS = 64, 84
+PIXELS = (1000, 700)
+PAPER, INK, WHITE, BLUE, MOUTH, ROSE = (np.array(c, float) for c in (
+    (250, 244, 230), (24, 22, 30), (252, 252, 250), (52, 112, 168), (196, 54, 58), (232, 132, 122)))
+
+
+def card():
+    """Vertices, triangles and texture coordinates of the card."""
+    half = WIDTH / 2
+    x = np.linspace(0, half - CORNER, COLUMNS // 2 - 2)
+    x = np.concatenate([x, [half - CORNER / 2, half]])
+    x = np.concatenate([-x[:0:-1], x])
+    cut = np.maximum(np.abs(x) - half + CORNER, 0)
+    low = ARCH * np.maximum(np.cos(np.pi / 2 * x / FOOT), 0)**1.5 + cut
+    high = HEIGHT - cut
+    t = np.linspace(0, 1, ROWS + 1)[:, None]
+    y = low + t * (high - low)
+    vertices = np.stack([np.broadcast_to(x, y.shape), y, np.zeros_like(y)], axis=2).reshape(-1, 3)
+    j, i = np.divmod(np.arange(ROWS * (len(x) - 1)), len(x) - 1)
+    a = j * len(x) + i
+    b, c, d = a + 1, a + len(x) + 1, a + len(x)
+    even = ((i + j) % 2 == 0)[:, None]
+    one = np.where(even, np.stack([a, b, c], 1), np.stack([a, b, d], 1))
+    two = np.where(even, np.stack([a, c, d], 1), np.stack([b, c, d], 1))
+    uv = np.stack([vertices[:, 0] / WIDTH + 0.5, 1 - vertices[:, 1] / HEIGHT], axis=1)
+    return vertices, np.stack([one, two], axis=1).reshape(-1, 3), uv
+
+
+def spade(x, y):
+    """Distance of a spade from about -1 to 1 in both directions."""
+    x = np.abs(x)
+    round_ = np.hypot(x - 0.43, y + 0.22) - 0.43
+    t = np.clip((y + 0.22) / 1.22, 0, 1)
+    leaf = np.maximum(0.75 * (x - 0.86 * (0.5 + 0.5 * np.cos(np.pi * t))**0.72), np.maximum(-0.22 - y, y - 1))
+    middle = np.maximum(np.maximum(x - 0.43, y), -0.34 - y)
+    stem = np.maximum(np.maximum(y + 0.15, -0.95 - y), x - 0.06 - 0.62 * np.maximum(-0.30 - y, 0)**1.6)
+    return np.min([round_, leaf, middle, stem], axis=0)
+
+
+def letter(x, y):
+    """Distance of a letter A from -1 to 1 in height."""
+    x = np.abs(x)
+    slope = np.array([0.62, 2.0]) / np.hypot(0.62, 2.0)
+    leg = np.abs((x - 0.06) * slope[1] + (y - 1.0) * slope[0]) - 0.15
+    leg = np.maximum(leg, np.abs(y) - 1)
+    serif = np.maximum(np.abs(y + 0.94) - 0.06, np.abs(x - 0.66) - 0.25)
+    bar = np.maximum(np.abs(y + 0.30) - 0.09, x - 0.45)
+    return np.min([leg, serif, bar], axis=0)
+
+
+def picture():
+    """(indices, palette) of the card's picture."""
+    rows, columns = PIXELS
+    y, x = np.meshgrid(HEIGHT * (1 - (np.arange(rows) + 0.5) / rows), WIDTH * ((np.arange(columns) + 0.5) / columns - 0.5),
+                       indexing="ij")
+    image, pixel = np.broadcast_to(PAPER, (*PIXELS, 3)).copy(), HEIGHT / rows
+
+    def lay(distance, color, strength=1.0):
+        share = strength * np.clip(0.5 - distance / (1.4 * pixel), 0, 1)[..., None]
+        image[:] = image + share * (color - image)
+
+    def oval(cx, cy, a, b):
+        return (np.hypot((np.abs(x) - cx) / a, (y - cy) / b) - 1) * min(a, b)
+
+    frame = np.maximum(np.abs(x) - 0.232, np.abs(y - 0.5) - 0.442)
+    lay(np.abs(frame) - 0.0022, INK)
+    lay(np.abs(frame + 0.010) - 0.0010, INK)
+    lay(0.23 * spade(x / 0.23, (y - 0.515) / 0.265), INK)
+    for turn in (1, -1):  # the corners, the lower one upside down
+        u, v = turn * x + 0.290, turn * (y - 0.5) - 0.405
+        lay(0.042 * letter(u / 0.036, v / 0.042), INK)
+        lay(0.030 * spade(u / 0.032, (v + 0.092) / 0.034), INK)
+    # The face on the spade.
+    lay(oval(0.068, 0.510, 0.047, 0.063), WHITE)
+    lay(oval(0.060, 0.505, 0.028, 0.039), BLUE)
+    lay(oval(0.060, 0.505, 0.016, 0.024), INK)
+    lay(oval(0.051, 0.520, 0.008, 0.010), WHITE)
+    lay(oval(0.145, 0.440, 0.023, 0.014), ROSE, 0.9)
+    t = (np.abs(x) - 0.068) / 0.036
+    lay(np.maximum(np.abs(y - 0.598 - 0.012 * (1 - t**2)) - 0.007, 0.04 * (np.abs(t) - 1)), WHITE)
+    smile = y - 0.422 - 3.0 * x**2
+    lay(np.maximum(np.maximum(smile, np.hypot(x / 0.078, (y - 0.430) / 0.056) * 0.056 - 0.056), -1), WHITE)
+    inner = np.maximum(smile + 0.008, np.hypot(x / 0.069, (y - 0.430) / 0.047) * 0.047 - 0.047)
+    lay(inner, MOUTH)
+
+    ramp = np.linspace(0, 1, 32)[:, None]
+    pairs = [(PAPER, INK), (INK, WHITE), (WHITE, BLUE), (BLUE, INK), (WHITE, MOUTH), (INK, ROSE), (BLUE, WHITE)]
+    palette = np.round(np.concatenate([a + ramp * (b - a) for a, b in pairs])).astype(np.uint8)
+    flat = np.round(image).reshape(-1, 3)
+    colors, inverse = np.unique(flat, axis=0, return_inverse=True)
+    nearest = np.argmin(np.sum((colors[:, None] - palette[None].astype(float))**2, axis=2), axis=1)
+    return nearest[inverse.reshape(-1)].reshape(PIXELS).astype(np.uint8), palette
+
+
+def make():
+    vertices, triangles, uv = card()
+    print(f"card: {len(triangles)} triangles, {len(vertices)} vertices, lowest {vertices[:, 1].min():.4f} m")
+    part = {"name": "card", "positions": vertices, "triangles": triangles, "uv": uv, "color": (1.0, 1.0, 1.0),
+            "metallic": 0.0, "roughness": 0.4}
+    return {"card.glb": files.glb_bytes("card", [part], generator="assets/card/make.py"), "card.png": files.png_bytes(*picture())}
+
+
+if __name__ == "__main__":
+    generator.main(make, __file__, "Makes card.glb and card.png.")

@@ -1,0 +1,68 @@
+"""A beach ball with a face: diameter 1 m, standing on y = 0 around the y axis, in six gores about it; it looks to +z.
+`python3 make.py` writes sphere.glb beside this file; `--check` compares instead."""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+import character
+import generator
+import lattice
+import sculpt
+from face import Face, ellipse
+
+RADIUS = 0.5  # m
+CELLS = 44  # along each side of the six patches
+GORES = {"red": 30, "blue": 150, "yellow": 270}  # degrees of their middles from +x towards +z; what is between is white
+LOOKS = {
+    "white": ((0.84, 0.80, 0.72), 0.25), "red": ((0.66, 0.045, 0.03), 0.25), "blue": ((0.03, 0.16, 0.50), 0.25),
+    "yellow": ((0.85, 0.50, 0.04), 0.25), "eye_white": ((0.92, 0.92, 0.90), 0.05), "iris": ((0.03, 0.22, 0.30), 0.05),
+    "pupil": ((0.008, 0.006, 0.005), 0.05), "brow": ((0.05, 0.03, 0.02), 0.4), "mouth": ((0.16, 0.02, 0.02), 0.3),
+    "tongue": ((0.80, 0.24, 0.20), 0.3), "blush": ((0.90, 0.36, 0.30), 0.5),
+}
+
+
+def shape(p):
+    return np.linalg.norm(p - (0, RADIUS, 0), axis=1) - RADIUS
+
+
+def gore(middle):
+    """Negative within 30 degrees of this direction, beside the buttons at the poles."""
+    sides = [np.array([np.sin(a), 0, -np.cos(a)]) for a in np.radians((middle + 30, middle - 30))]
+
+    def value(p):
+        button = 0.085 - np.hypot(p[:, 0], p[:, 2])
+        return np.max([-(p @ sides[0]), p @ sides[1], button], axis=0)
+    return value
+
+
+def make():
+    nodes, sides = lattice.boundary((CELLS, CELLS, CELLS))
+    ways = np.tan(np.pi / 4 * (2 * nodes / CELLS - 1))
+    vertices = RADIUS * (ways / np.linalg.norm(ways, axis=1, keepdims=True) + (0, 1, 0))
+    triangles = np.concatenate(sides)
+    body = vertices, triangles, np.full(len(triangles), "white", dtype=object)
+    for name, middle in GORES.items():
+        body = sculpt.paint(shape, *body, gore(middle), name)
+
+    face, parts = Face(sculpt.chart(shape, (0, RADIUS, 0.7), (1, 0, 0), (0, 1, 0))), []
+    for side in (-1, 1):
+        parts += face.eye(0.090 * side, 0.085, 0.070, 0.095, 0.026, -0.08 * side, look=(-0.10 * side, 0.0))
+        parts.append(("blush", *face.dome(ellipse(0.165 * side, -0.045, 0.040, 0.027), 0.0022, None, 6.0, 0.003, 8)))
+        t = np.linspace(-1, 1, 25)
+        parts.append(("brow", *face.tube((0.092 + 0.052 * t) * side, 0.212 + 0.018 * (1 - t**2) - 0.006 * t,
+                                         0.012 * np.sqrt(np.maximum(1 - t**4, 0)))))
+
+    def mouth(rho, psi):
+        x, y = 0.085 * rho * np.cos(psi), rho * np.sin(psi)
+        return x, -0.090 + y * np.where(y > 0, 0.014, 0.085) + 0.032 * (x / 0.085)**2
+
+    parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
+    parts.append(("tongue", *face.dome(ellipse(0, -0.142, 0.042, 0.024), 0.0085, None, 3.0, 0.001, 8, 40)))
+    return {"sphere.glb": character.glb("sphere", "assets/sphere/make.py", body, parts, LOOKS)}
+
+
+if __name__ == "__main__":
+    generator.main(make, __file__, "Makes sphere.glb.")
