@@ -78,11 +78,9 @@ EDGES = [(np.array(a), np.array(a) + np.eye(3, dtype=int)[axis]) for axis in ran
          for a in np.ndindex(2, 2, 2) if a[axis] == 0]
 
 
-def surface(shape, low, high, cell, rounds=12):
-    """Vertices and triangles of the closed surface of a shape between the corners low and high: surface nets (Gibson
-    1998) with cells of this size, then evened out on the shape."""
-    low = np.asarray(low, float) - 0.4567 * cell  # so that no flat side of a model lies in a plane of the grid
-    size = np.ceil((np.asarray(high) - low) / cell).astype(int) + 2
+def nets(shape, low, high, cell):
+    """Vertices and quadrilaterals of the surface of a shape between the corners: surface nets (Gibson 1998)."""
+    size = np.ceil((high - low) / cell).astype(int) + 2
     axes = [low[k] + cell * np.arange(size[k]) for k in range(3)]
     value = np.empty(size)
     for i, x in enumerate(axes[0]):
@@ -123,7 +121,20 @@ def surface(shape, low, high, cell, rounds=12):
                 c[:, v] += dv
                 corner.append(index[tuple(c.T)])
             quads.append(np.stack(corner[::-1] if flip else corner, axis=1))
-    quads = np.concatenate(quads)
+    return vertices, np.concatenate(quads)
+
+
+def surface(shape, low, high, cell, rounds=12):
+    """Vertices and triangles of the closed surface of a shape between the corners low and high, from cells of this size,
+    evened out on the shape."""
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    # Shifted so that no flat side of a model lies in a plane of the grid; where a saddle of the shape lies in a side of a
+    # cell, two sheets meet in an edge: then another shift.
+    for shift in (0.4567, 0.1579, 0.7283):
+        vertices, quads = nets(shape, low - shift * cell, high, cell)
+        ends = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
+        if len(np.unique(ends, axis=0)) == len(ends):
+            break
 
     edges = np.unique(np.sort(np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)]), axis=1), axis=0)
     edges = np.concatenate([edges, edges[:, ::-1]])
