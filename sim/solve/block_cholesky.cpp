@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/parallel.h"
 #include "sim/solve/dense_tile.h"
 
 namespace vivify::sim {
@@ -71,6 +72,12 @@ bool eliminate_columns(double* panel, long stride, int begin, double* packed, do
   return true;
 }
 
+// Calls function(part) for all, on several threads.
+template <typename Part, typename Function>
+void each(const std::vector<Part>& parts, const Function& function) {
+  if (!parts.empty()) parallel_for(parts.size(), [&](std::size_t i) { function(parts[i]); });
+}
+
 }  // namespace
 
 // ---- Analysis ----
@@ -86,7 +93,8 @@ BlockCholesky::BlockCholesky(const Eigen::SparseMatrix<double>& lower, int dim)
   }
   position_ = std::move(elimination.position);
   make_slots(lower, panel_of);
-  make_targets(panel_of);
+  call_by_border();
+  make_targets(std::move(panel_of));
 }
 
 void BlockCholesky::make_panels(const Elimination& elimination) {
@@ -104,12 +112,25 @@ void BlockCholesky::make_panels(const Elimination& elimination) {
     values += long(stride) * width;
     most_rows_ = std::max(most_rows_, stride);
     most_width = std::max(most_width, width);
+    const std::vector<int>& ends = elimination.subtree_ends;
+    if (subtrees_.size() == ends.size() || panel_count() != ends[subtrees_.size()]) continue;
+    const int below = height - width, border_stride = round_up(below, kLanes);
+    const int first_panel = first_outside();
+    const Panel border = {size_ + border_columns_,        below, below, border_stride,
+                          static_cast<int>(rows_.size()), values};
+    for (int row = 0; row < below; ++row) rows_.push_back(rows_[panels_.back().row_begin + row]);
+    border_columns_ += below;
+    values += long(border_stride) * below + kSlack;
+    subtrees_.push_back({first_panel, panel_count(), border, panels_[first_panel].value_begin, values});
   }
   values_.resize(static_cast<std::size_t>(values + kSlack));
   pivots_.resize(static_cast<std::size_t>(size_));
   inverse_pivots_.resize(static_cast<std::size_t>(size_));
-  packed_.resize(static_cast<std::size_t>(kUpdateColumns * most_width + kSlack));
-  product_.resize(static_cast<std::size_t>(kUpdateColumns * (most_rows_ + kSlack)));
+  scratch_.resize(subtrees_.size() + 1);
+  for (Scratch& scratch : scratch_) {
+    scratch.packed.resize(static_cast<std::size_t>(kUpdateColumns * most_width + kSlack));
+    scratch.product.resize(static_cast<std::size_t>(kUpdateColumns * (most_rows_ + kSlack)));
+  }
 }
 
 void BlockCholesky::make_slots(const Eigen::SparseMatrix<double>& lower, const std::vector<int>& panel_of) {
@@ -130,15 +151,38 @@ void BlockCholesky::make_slots(const Eigen::SparseMatrix<double>& lower, const s
   }
 }
 
-void BlockCholesky::make_targets(const std::vector<int>& panel_of) {
-  for (const Panel& panel : panels_) {
-    const int* rows = rows_.data() + panel.row_begin;
-    for (int i = 0; i < panel.below();) {
-      const Panel& target = panels_[panel_of[rows[i] / dim_]];
+// Calls the rows of subtrees that lie outside them by the columns of the border.
+void BlockCholesky::call_by_border() {
+  for (const Subtree& subtree : subtrees_) {
+    const Panel& root = panels_[subtree.end_panel - 1];
+    const auto border = rows_.begin() + subtree.border.row_begin;
+    for (int p = subtree.first_panel; p < subtree.end_panel; ++p) {
+      auto found = border;
+      for (int i = 0; i < panels_[p].below(); ++i) {
+        int& row = rows_[panels_[p].row_begin + i];
+        if (row < root.first + root.width) continue;
+        found = std::lower_bound(found, border + subtree.border.width, row);
+        row = subtree.border.first + static_cast<int>(found - border);
+      }
+    }
+  }
+}
+
+void BlockCholesky::make_targets(std::vector<int> panel_of) {
+  std::vector<const Panel*> panels;
+  for (const Panel& panel : panels_) panels.push_back(&panel);
+  for (const Subtree& subtree : subtrees_) {
+    panel_of.insert(panel_of.end(), static_cast<std::size_t>(subtree.border.width / dim_),
+                    static_cast<int>(panels.size()));
+    panels.push_back(&subtree.border);
+  }
+  const auto add_targets = [&](const int* rows, int count) {
+    for (int i = 0; i < count;) {
+      const Panel& target = *panels[panel_of[rows[i] / dim_]];
       const int* target_rows = rows_.data() + target.row_begin;
       const int* found = target_rows;
       int chunk = static_cast<int>(chunks_.size());
-      for (int j = i; j < panel.below(); j += dim_) {
+      for (int j = i; j < count; j += dim_) {
         int place = rows[j] - target.first;
         if (place >= target.width) {
           found = std::lower_bound(found, target_rows + target.below(), rows[j]);
@@ -154,12 +198,19 @@ void BlockCholesky::make_targets(const std::vector<int>& panel_of) {
           }
         }
       }
-      for (; i < panel.below() && rows[i] < target.first + target.width; i += dim_) {
+      for (; i < count && rows[i] < target.first + target.width; i += dim_) {
         while (chunks_[chunk].row + chunks_[chunk].count <= i) ++chunk;
         targets_.push_back({target.value_begin + long(rows[i] - target.first) * target.stride, target.stride,
                             chunk, static_cast<int>(chunks_.size())});
       }
     }
+  };
+  auto subtree = subtrees_.begin();
+  for (const Panel& panel : panels_) {  // in the order of rows_
+    add_targets(rows_.data() + panel.row_begin, panel.below());
+    if (subtree == subtrees_.end() || &panel != &panels_[subtree->end_panel - 1]) continue;
+    add_targets(rows_.data() + subtree->border.row_begin, subtree->border.width);
+    ++subtree;
   }
 }
 
@@ -180,19 +231,37 @@ double BlockCholesky::flops() const {
 
 template <bool kToTheEnd>
 bool BlockCholesky::factorize(const double* values) {
-  std::fill(values_.begin(), values_.end(), 0);
+  const long outside = subtrees_.empty() ? 0 : subtrees_.back().value_end;
+  each(subtrees_, [&](const Subtree& subtree) {
+    std::fill(values_.begin() + subtree.value_begin, values_.begin() + subtree.value_end, 0);
+  });
+  std::fill(values_.begin() + outside, values_.end(), 0);
   for (const long slot : slots_) values_[slot] = *values++;
-  for (const Panel& panel : panels_) {
+  std::vector<char> done(subtrees_.size());
+  each(subtrees_, [&](const Subtree& subtree) {
+    const std::size_t i = static_cast<std::size_t>(&subtree - subtrees_.data());
+    done[i] = eliminate<kToTheEnd>(subtree.first_panel, subtree.end_panel, scratch_[i]);
+  });
+  if (std::find(done.begin(), done.end(), false) != done.end()) return false;
+  for (const auto& [first_panel, end_panel, border, value_begin, value_end] : subtrees_)
+    add_to_targets(border.row_begin, border.width, values_.data() + border.value_begin, border.stride);
+  return eliminate<kToTheEnd>(first_outside(), panel_count(), scratch_.back());
+}
+
+template <bool kToTheEnd>
+bool BlockCholesky::eliminate(int first_panel, int end_panel, Scratch& scratch) {
+  for (int p = first_panel; p < end_panel; ++p) {
+    const Panel& panel = panels_[p];
     for (int begin = 0; begin < panel.width; begin += kPanelColumns) {
       const bool done =
           with_constant<kPanelColumns>(std::min(kPanelColumns, panel.width - begin), [&](auto columns) {
             return eliminate_columns<columns(), kToTheEnd>(
-                values_.data() + panel.value_begin, panel.stride, begin, packed_.data(),
+                values_.data() + panel.value_begin, panel.stride, begin, scratch.packed.data(),
                 pivots_.data() + panel.first, inverse_pivots_.data() + panel.first);
           });
       if (!done) return false;
     }
-    update_targets(panel);
+    update_targets(panel, scratch);
   }
   return true;
 }
@@ -209,52 +278,59 @@ BlockCholesky::Inertia BlockCholesky::inertia(const double* values) {
 }
 
 // Subtracts L D Lᵀ of the rows below a panel from the panels of those rows.
-void BlockCholesky::update_targets(const Panel& panel) {
+void BlockCholesky::update_targets(const Panel& panel, Scratch& scratch) {
   const long stride = panel.stride;
+  double *packed = scratch.packed.data(), *product = scratch.product.data() + kSlack;
   for (int begin = 0; begin < panel.below(); begin += kUpdateColumns) {
     const double* rows = values_.data() + panel.value_begin + panel.width + begin;
     const int count = panel.below() - begin, columns = std::min(kUpdateColumns, count);
-    double* product = product_.data() + kSlack;
     const long product_stride = round_up(count, 2 * kLanes);
     with_constant<kUpdateColumns>(columns, [&](auto constant) {
       constexpr int kColumns = constant();
-      pack<kColumns>(rows, stride, pivots_.data() + panel.first, panel.width, packed_.data());
+      pack<kColumns>(rows, stride, pivots_.data() + panel.first, panel.width, packed);
       for (int row = 0; row < count; row += 2 * kLanes) {
         with_constant<2>(count - row > kLanes ? 2 : 1, [&](auto vectors) {
           Tile<vectors(), kColumns> tile;
           tile.set_zero();
-          tile.subtract_product(rows + row, stride, packed_.data(), kColumns, 1, panel.width);
+          tile.subtract_product(rows + row, stride, packed, kColumns, 1, panel.width);
           tile.store([&](int j) { return product + row + j * product_stride; });
         });
       }
     });
-    with_constant<3>(dim_, [&](auto constant) {
-      constexpr int kDim = constant();
-      for (int column = 0; column < columns; column += kDim) {
-        const Target& target = targets_[(panel.row_begin + begin + column) / kDim];
-        double* to = values_.data() + target.column;
-        const double* from = product + column * product_stride - begin;
-        for (int c = target.first_chunk; c < target.last_chunk; ++c) {
-          const Chunk& chunk = chunks_[c];
-          const Vector4 mask = first_lanes(chunk.count);
-          for (int i = 0; i < kDim; ++i) {
-            double* place = to + chunk.place + i * target.stride;
-            const Vector4 added = _mm256_and_pd(_mm256_loadu_pd(from + chunk.row + i * product_stride), mask);
-            _mm256_storeu_pd(place, _mm256_add_pd(_mm256_loadu_pd(place), added));
-          }
+    add_to_targets(panel.row_begin + begin, columns, product - begin, product_stride);
+  }
+}
+
+// Adds columns of a product, which are those of the unknowns rows_[row_begin …], to the panels of these.
+void BlockCholesky::add_to_targets(int row_begin, int columns, const double* product, long product_stride) {
+  with_constant<3>(dim_, [&](auto constant) {
+    constexpr int kDim = constant();
+    for (int column = 0; column < columns; column += kDim) {
+      const Target& target = targets_[(row_begin + column) / kDim];
+      double* to = values_.data() + target.column;
+      const double* from = product + column * product_stride;
+      for (int c = target.first_chunk; c < target.last_chunk; ++c) {
+        const Chunk& chunk = chunks_[c];
+        const Vector4 mask = first_lanes(chunk.count);
+        for (int i = 0; i < kDim; ++i) {
+          double* place = to + chunk.place + i * target.stride;
+          const Vector4 added = _mm256_and_pd(_mm256_loadu_pd(from + chunk.row + i * product_stride), mask);
+          _mm256_storeu_pd(place, _mm256_add_pd(_mm256_loadu_pd(place), added));
         }
       }
-    });
-  }
+    }
+  });
 }
 
 // ---- Solution ----
 
 void BlockCholesky::solve_in_place(Eigen::Ref<Eigen::MatrixXd> x) const {
-  // The right-hand sides of one degree of freedom beside each other, in the order of elimination.
+  // The right-hand sides of one degree of freedom beside each other, in the order of elimination; then those
+  // of the borders.
   const int count = static_cast<int>(x.cols()), stride = count == 1 ? 1 : round_up(count, kLanes);
-  std::vector<double> ordered(static_cast<std::size_t>(stride) * static_cast<std::size_t>(size_));
-  const auto each = [&](const auto& call) {
+  std::vector<double> ordered(static_cast<std::size_t>(stride) *
+                              static_cast<std::size_t>(size_ + border_columns_));
+  const auto each_value = [&](const auto& call) {
     for (int column = 0; column < count; ++column) {
       double* from = x.data() + column * x.outerStride();
       for (const int position : position_) {
@@ -263,22 +339,54 @@ void BlockCholesky::solve_in_place(Eigen::Ref<Eigen::MatrixXd> x) const {
       }
     }
   };
-  each([](double given, double& place) { place = given; });
-  if (count == 1) {
-    solve_one(ordered.data());
-  } else {
-    for (int column = 0; column < count; column += 3 * kLanes) {
-      with_constant<3>(std::min(3, (stride - column) / kLanes),
-                       [&](auto vectors) { solve_columns<vectors()>(ordered.data() + column, stride); });
+  // Calls function(entry of a border, entry that it stands for).
+  const auto each_border_value = [&](const auto& function) {
+    for (const Subtree& subtree : subtrees_) {
+      double* own = ordered.data() + long(subtree.border.first) * stride;
+      for (int row = 0; row < subtree.border.width; ++row) {
+        double* other = ordered.data() + long(rows_[subtree.border.row_begin + row]) * stride;
+        for (int i = 0; i < stride; ++i) function(*own++, *other++);
+      }
     }
-  }
-  each([](double& given, double solved) { given = solved; });
+  };
+  each_value([](double given, double& place) { place = given; });
+  each(subtrees_, [&](const Subtree& subtree) {
+    forward(ordered.data(), stride, subtree.first_panel, subtree.end_panel);
+  });
+  each_border_value([](double own, double& other) { other += own; });
+  forward(ordered.data(), stride, first_outside(), panel_count());
+  backward(ordered.data(), stride, first_outside(), panel_count());
+  each_border_value([](double& own, double other) { own = other; });
+  each(subtrees_, [&](const Subtree& subtree) {
+    backward(ordered.data(), stride, subtree.first_panel, subtree.end_panel);
+  });
+  each_value([](double& given, double solved) { given = solved; });
 }
 
-void BlockCholesky::solve_one(double* x) const {
+// `count` right-hand sides: by the columns of L in some panels, and back by those of D Lᵀ.
+void BlockCholesky::forward(double* x, int count, int first_panel, int end_panel) const {
+  if (count == 1) return forward_one(x, first_panel, end_panel);
+  for (int column = 0; column < count; column += 3 * kLanes) {
+    with_constant<3>(std::min(3, (count - column) / kLanes), [&](auto vectors) {
+      forward_columns<vectors()>(x + column, count, first_panel, end_panel);
+    });
+  }
+}
+
+void BlockCholesky::backward(double* x, int count, int first_panel, int end_panel) const {
+  if (count == 1) return backward_one(x, first_panel, end_panel);
+  for (int column = 0; column < count; column += 3 * kLanes) {
+    with_constant<3>(std::min(3, (count - column) / kLanes), [&](auto vectors) {
+      backward_columns<vectors()>(x + column, count, first_panel, end_panel);
+    });
+  }
+}
+
+void BlockCholesky::forward_one(double* x, int first_panel, int end_panel) const {
   std::vector<double> scratch(static_cast<std::size_t>(most_rows_));
   double* y = scratch.data();  // the rows of a panel
-  for (const Panel& panel : panels_) {
+  for (int p = first_panel; p < end_panel; ++p) {
+    const Panel& panel = panels_[p];
     const int* rows = rows_.data() + panel.row_begin;
     const long stride = panel.stride;
     std::copy_n(x + panel.first, panel.width, y);
@@ -312,16 +420,22 @@ void BlockCholesky::solve_one(double* x) const {
     std::copy_n(y, panel.width, x + panel.first);
     for (int row = 0; row < panel.below(); ++row) x[rows[row]] += y[panel.width + row];
   }
-  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
-    const int* rows = rows_.data() + panel->row_begin;
-    const long stride = panel->stride;
-    for (int i = 0; i < panel->width; ++i) y[i] = x[panel->first + i] * inverse_pivots_[panel->first + i];
-    for (int row = 0; row < panel->below(); ++row) y[panel->width + row] = x[rows[row]];
-    std::fill(y + panel->height, y + stride, 0.0);
-    for (int begin = (panel->width - 1) / kPanelColumns * kPanelColumns; begin >= 0; begin -= kPanelColumns) {
-      with_constant<kPanelColumns>(std::min(kPanelColumns, panel->width - begin), [&](auto constant) {
+}
+
+void BlockCholesky::backward_one(double* x, int first_panel, int end_panel) const {
+  std::vector<double> scratch(static_cast<std::size_t>(most_rows_));
+  double* y = scratch.data();  // the rows of a panel
+  for (int p = end_panel - 1; p >= first_panel; --p) {
+    const Panel& panel = panels_[p];
+    const int* rows = rows_.data() + panel.row_begin;
+    const long stride = panel.stride;
+    for (int i = 0; i < panel.width; ++i) y[i] = x[panel.first + i] * inverse_pivots_[panel.first + i];
+    for (int row = 0; row < panel.below(); ++row) y[panel.width + row] = x[rows[row]];
+    std::fill(y + panel.height, y + stride, 0.0);
+    for (int begin = (panel.width - 1) / kPanelColumns * kPanelColumns; begin >= 0; begin -= kPanelColumns) {
+      with_constant<kPanelColumns>(std::min(kPanelColumns, panel.width - begin), [&](auto constant) {
         constexpr int kColumns = constant();
-        const double* columns = values_.data() + panel->value_begin + begin * stride;
+        const double* columns = values_.data() + panel.value_begin + begin * stride;
         Vector4 sums[kColumns];
 #pragma GCC unroll 4
         for (int j = 0; j < kColumns; ++j) sums[j] = _mm256_setzero_pd();
@@ -345,15 +459,15 @@ void BlockCholesky::solve_one(double* x) const {
         for (int j = 0; j < kColumns; ++j) y[begin + j] = top[j];
       });
     }
-    std::copy_n(y, panel->width, x + panel->first);
+    std::copy_n(y, panel.width, x + panel.first);
   }
 }
 
 // Right-hand sides 0 … 4·kVectors − 1 of each degree of freedom, `count` apart: the rows of the tiles.
 template <int kVectors>
-void BlockCholesky::solve_columns(double* x, long count) const {
-  constexpr int kStride = kVectors * kLanes;
-  for (const Panel& panel : panels_) {
+void BlockCholesky::forward_columns(double* x, long count, int first_panel, int end_panel) const {
+  for (int p = first_panel; p < end_panel; ++p) {
+    const Panel& panel = panels_[p];
     const double* values = values_.data() + panel.value_begin;
     double* own = x + panel.first * count;
     for (int begin = 0; begin < panel.width; begin += kSolveRows) {
@@ -383,31 +497,36 @@ void BlockCholesky::solve_columns(double* x, long count) const {
       });
     }
   }
+}
+
+template <int kVectors>
+void BlockCholesky::backward_columns(double* x, long count, int first_panel, int end_panel) const {
+  constexpr int kStride = kVectors * kLanes;
   std::vector<double> gathered(static_cast<std::size_t>(kStride * most_rows_));
-  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
-    const double* values = values_.data() + panel->value_begin;
-    const int* rows = rows_.data() + panel->row_begin;
-    for (int row = 0; row < panel->below(); ++row) {
+  for (int p = end_panel - 1; p >= first_panel; --p) {
+    const Panel& panel = panels_[p];
+    const double* values = values_.data() + panel.value_begin;
+    const int* rows = rows_.data() + panel.row_begin;
+    for (int row = 0; row < panel.below(); ++row) {
       std::copy_n(x + rows[row] * count, kStride, gathered.data() + row * kStride);
     }
-    double* own = x + panel->first * count;
-    for (int begin = (panel->width - 1) / kSolveRows * kSolveRows; begin >= 0; begin -= kSolveRows) {
-      with_constant<kSolveRows>(std::min(kSolveRows, panel->width - begin), [&](auto constant) {
+    double* own = x + panel.first * count;
+    for (int begin = (panel.width - 1) / kSolveRows * kSolveRows; begin >= 0; begin -= kSolveRows) {
+      with_constant<kSolveRows>(std::min(kSolveRows, panel.width - begin), [&](auto constant) {
         constexpr int kRows = constant();
         const auto place = [&](int j) { return own + (begin + j) * count; };
-        const double* columns = values + long(begin) * panel->stride;
+        const double* columns = values + long(begin) * panel.stride;
         const int next = begin + kRows;
         Tile<kVectors, kRows> tile;
         tile.load(place);
-        for (int i = 0; i < kRows; ++i) tile.scale(i, inverse_pivots_[panel->first + begin + i]);
-        tile.subtract_product(own + next * count, count, columns + next, 1, panel->stride,
-                              panel->width - next);
-        tile.subtract_product(gathered.data(), kStride, columns + panel->width, 1, panel->stride,
-                              panel->below());
+        for (int i = 0; i < kRows; ++i) tile.scale(i, inverse_pivots_[panel.first + begin + i]);
+        tile.subtract_product(own + next * count, count, columns + next, 1, panel.stride, panel.width - next);
+        tile.subtract_product(gathered.data(), kStride, columns + panel.width, 1, panel.stride,
+                              panel.below());
 #pragma GCC unroll 16
         for (int i = kRows - 1; i > 0; --i) {
 #pragma GCC unroll 16
-          for (int j = 0; j < i; ++j) tile.eliminate(j, i, columns[begin + i + j * panel->stride]);
+          for (int j = 0; j < i; ++j) tile.eliminate(j, i, columns[begin + i + j * panel.stride]);
         }
         tile.store(place);
       });

@@ -9,8 +9,9 @@
 namespace vivify::sim {
 
 // Supernodal and right-looking, without pivoting, for tens to thousands of degrees of freedom: each front of
-// the elimination is a dense panel, handled by AVX2 kernels. One thread, no BLAS, every sum in a fixed order:
-// always the same bits (docs/decisions/0002-determinism.md).
+// the elimination is a dense panel, handled by AVX2 kernels. Subtrees of a large elimination are shared out
+// between threads: each has copies of the unknowns outside it that it bears on, which are added up
+// afterwards. No BLAS, every sum in a fixed order: always the same bits (docs/decisions/0002-determinism.md).
 class BlockCholesky {
  public:
   // `lower` is the lower triangle of the matrices to come, columns sorted; rows dim·v … dim·v + dim − 1
@@ -58,19 +59,44 @@ class BlockCholesky {
     int first_chunk, last_chunk;
   };
 
+  // Panels first_panel … end_panel − 1, the last of them the root, and one of its own for the unknowns
+  // outside that it bears on: column i of `border` is that of row i of the root below its columns, and is
+  // called border.first + i, which is size_ or more. rows_ of the border are those unknowns.
+  struct Subtree {
+    int first_panel, end_panel;
+    Panel border;
+    long value_begin, value_end;  // of all these panels
+  };
+  // Of one thread at a time.
+  struct Scratch {
+    std::vector<double> packed, product;
+  };
+
   void make_panels(const Elimination& elimination);
   void make_slots(const Eigen::SparseMatrix<double>& lower, const std::vector<int>& panel_of);
-  void make_targets(const std::vector<int>& panel_of);
+  void call_by_border();
+  void make_targets(std::vector<int> panel_of);
+  int first_outside() const { return subtrees_.empty() ? 0 : subtrees_.back().end_panel; }
   template <bool kToTheEnd>
   bool factorize(const double* values);
-  void update_targets(const Panel& panel);
-  void solve_one(double* x) const;
+  template <bool kToTheEnd>
+  bool eliminate(int first_panel, int end_panel, Scratch& scratch);
+  void update_targets(const Panel& panel, Scratch& scratch);
+  void add_to_targets(int row_begin, int columns, const double* product, long product_stride);
+  void forward(double* x, int count, int first_panel, int end_panel) const;
+  void backward(double* x, int count, int first_panel, int end_panel) const;
+  void forward_one(double* x, int first_panel, int end_panel) const;
+  void backward_one(double* x, int first_panel, int end_panel) const;
   template <int kVectors>
-  void solve_columns(double* x, long count) const;
+  void forward_columns(double* x, long count, int first_panel, int end_panel) const;
+  template <int kVectors>
+  void backward_columns(double* x, long count, int first_panel, int end_panel) const;
 
   int dim_, size_;
   std::vector<int> position_;  // of each vertex in the order of elimination
-  std::vector<Panel> panels_;
+  std::vector<Panel> panels_;  // of the subtrees, then those outside
+  std::vector<Subtree> subtrees_;
+  int border_columns_ = 0;       // of all subtrees
   std::vector<int> rows_;        // of all panels, below their columns
   std::vector<Target> targets_;  // of each vertex in rows_
   std::vector<Chunk> chunks_;
@@ -78,7 +104,7 @@ class BlockCholesky {
   int most_rows_ = 0;        // of a panel
 
   std::vector<double> values_, pivots_, inverse_pivots_;
-  std::vector<double> packed_, product_;  // scratch of the factorisation
+  std::vector<Scratch> scratch_;  // of each subtree, and of what is outside
 };
 
 }  // namespace vivify::sim

@@ -4,11 +4,11 @@
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
-#include <limits>
 #include <mutex>
 #include <numeric>
 
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/rng.h"
 
 namespace vivify::sim {
@@ -20,6 +20,8 @@ constexpr int kNumberings = 12;
 // Of graphs of so many vertices, dissection is tried too, and finds less fill in solids; few numberings then.
 constexpr int kDissected = 1500, kNumberingsOfDissected = 2;
 constexpr int kLeaf = 120;  // vertices that are not dissected further
+// An elimination that costs so many cycles is divided into subtrees that cost between two shares of it.
+constexpr double kDividedCost = 2e6, kLeastShare = 0.01, kMostShare = 0.25;
 
 using Graph = std::vector<std::vector<int>>;  // neighbours of every vertex, without itself
 
@@ -211,6 +213,30 @@ std::vector<int> postorder(const std::vector<TreeFront>& fronts) {
   return result;
 }
 
+// Moves the fronts of the subtrees to the beginning of the order, and returns where each ends.
+std::vector<int> divide(const std::vector<TreeFront>& fronts, int dim, double total,
+                        std::vector<int>& order) {
+  if (total < kDividedCost) return {};
+  std::vector<double> cost(fronts.size(), 0);  // of everything below
+  std::vector<int> root_of(fronts.size(), -1);
+  for (const int i : order) {
+    cost[i] += front_cost(fronts[i], 0, dim);
+    for (const int child : fronts[i].children) cost[i] += cost[child];
+  }
+  for (auto i = order.rbegin(); i != order.rend(); ++i) {
+    if (root_of[*i] < 0 && cost[*i] >= kLeastShare * total && cost[*i] <= kMostShare * total)
+      root_of[*i] = *i;
+    for (const int child : fronts[*i].children) root_of[child] = root_of[*i];
+  }
+  const auto outside =
+      std::stable_partition(order.begin(), order.end(), [&](int i) { return root_of[i] >= 0; });
+  std::vector<int> ends;
+  for (auto i = order.begin(); i != outside; ++i) {
+    if (root_of[*i] == *i) ends.push_back(static_cast<int>(i - order.begin()) + 1);
+  }
+  return ends;
+}
+
 }  // namespace
 
 double elimination_flops(double width, double below) {
@@ -219,32 +245,42 @@ double elimination_flops(double width, double below) {
 
 Elimination order_elimination(const Eigen::SparseMatrix<double>& lower, int dim) {
   const Graph graph = vertex_graph(lower, dim);
-  std::vector<int> numbering(graph.size()), order;
-  std::iota(numbering.begin(), numbering.end(), 0);
-  std::vector<TreeFront> fronts;
-  double least_cost = std::numeric_limits<double>::infinity();
-  const auto compare = [&](const std::vector<int>& candidate) {
-    std::vector<TreeFront> merged = elimination_tree(graph, candidate);
-    merge_fronts(merged, dim);
-    const double cost = total_cost(merged, dim);
-    if (cost >= least_cost) return;
-    least_cost = cost;
-    order = candidate;
-    fronts = std::move(merged);
-  };
   const bool dissected = static_cast<int>(graph.size()) >= kDissected;
-  if (dissected) compare(dissection_order(graph));
+  std::vector<std::vector<int>> numberings(dissected ? kNumberingsOfDissected : kNumberings,
+                                           std::vector<int>(graph.size()));
+  std::iota(numberings[0].begin(), numberings[0].end(), 0);
   CounterRng rng(0);
-  for (int i = 0; i < (dissected ? kNumberingsOfDissected : kNumberings); ++i) {
-    compare(minimum_degree_order(graph, numbering));
-    for (std::size_t k = graph.size(); k > 1; --k) std::swap(numbering[k - 1], numbering[rng.next() % k]);
+  for (std::size_t i = 1; i < numberings.size(); ++i) {
+    numberings[i] = numberings[i - 1];
+    for (std::size_t k = graph.size(); k > 1; --k)
+      std::swap(numberings[i][k - 1], numberings[i][rng.next() % k]);
   }
+  struct Candidate {
+    std::vector<int> order;
+    std::vector<TreeFront> fronts;
+    double cost;
+  };
+  std::vector<Candidate> candidates(numberings.size() + (dissected ? 1 : 0));
+  parallel_for(candidates.size(), [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    const bool by_degree = !dissected || i > 0;
+    candidate.order =
+        by_degree ? minimum_degree_order(graph, numberings[dissected ? i - 1 : i]) : dissection_order(graph);
+    candidate.fronts = elimination_tree(graph, candidate.order);
+    merge_fronts(candidate.fronts, dim);
+    candidate.cost = total_cost(candidate.fronts, dim);
+  });
+  auto& [order, fronts, cost] =
+      *std::min_element(candidates.begin(), candidates.end(),
+                        [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
 
   Elimination result;
   std::vector<int> renumbered(graph.size());  // from the order of minimum degree to that of the fronts
   result.position.resize(graph.size());
   int next = 0;
-  for (const int index : postorder(fronts)) {
+  std::vector<int> front_order = postorder(fronts);
+  result.subtree_ends = divide(fronts, dim, cost, front_order);
+  for (const int index : front_order) {
     result.fronts.push_back(std::move(fronts[index]));
     for (int& vertex : result.fronts.back().columns) {
       result.position[order[vertex]] = next;

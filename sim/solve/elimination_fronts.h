@@ -16,6 +16,9 @@ struct Elimination {
   std::vector<int> position;  // of every vertex in the order of elimination
   // In the order of elimination; columns and rows are positions, columns are consecutive over all fronts.
   std::vector<Front> fronts;
+  // Ends, in this list, of subtrees that come first: whole ones of the tree of elimination, the root last, so
+  // that no column of one has rows in another. Small matrices have none.
+  std::vector<int> subtree_ends;
 };
 
 // Chooses the order on the graph of vertices (rows dim·v … dim·v + dim − 1 of the matrix belong to vertex v)

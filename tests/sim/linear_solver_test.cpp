@@ -263,7 +263,8 @@ TEST_P(LargeFactorisation, SolvesWithTheSameBitsOnAnyThreadCount) {
     EXPECT_EQ(factor.inertia(opposite.valuePtr()).negative, lower.cols());
     ASSERT_TRUE(factor.factorize(lower.valuePtr()));
     Eigen::MatrixXd x = rhs;
-    factor.solve_in_place(x);
+    factor.solve_in_place(x.leftCols(4));
+    factor.solve_in_place(x.rightCols(1));
     set_thread_count(0);
     if (threads == 1) expected = x;
     EXPECT_EQ(x, expected) << threads << " threads";
@@ -277,6 +278,29 @@ INSTANTIATE_TEST_SUITE_P(Patterns, LargeFactorisation,
                            return std::string(std::get<0>(test.param).name) + "_" +
                                   std::to_string(std::get<1>(test.param)) + "d";
                          });
+
+TEST_P(LargeFactorisation, DividesIntoIndependentSubtrees) {
+  const auto& [shape, dim] = GetParam();
+  const Elimination elimination = order_elimination(random_matrix(shape, dim, 0.1, 2), dim);
+  int first_front = 0, first_column = 0;
+  for (const int end : elimination.subtree_ends) {
+    ASSERT_LT(first_front, end);
+    const std::vector<int>& outside = elimination.fronts[end - 1].rows;  // of the root
+    const int last_column = elimination.fronts[end - 1].columns.back();
+    for (int f = first_front; f < end; ++f) {
+      EXPECT_GE(elimination.fronts[f].columns.front(), first_column);
+      for (const int row : elimination.fronts[f].rows)
+        EXPECT_TRUE(row <= last_column || std::binary_search(outside.begin(), outside.end(), row));
+    }
+    first_front = end;
+    first_column = last_column + 1;
+  }
+  for (const int end : elimination.subtree_ends) {
+    for (const int row : elimination.fronts[end - 1].rows) EXPECT_GE(row, first_column);  // of no subtree
+  }
+  if (std::string(shape.name) == "lattice") EXPECT_GE(elimination.subtree_ends.size(), 4u);
+  if (std::string(shape.name) == "loose_vertices") EXPECT_TRUE(elimination.subtree_ends.empty());
+}
 
 // Less than minimum degree, with the zeros inside fronts.
 TEST(LinearSolver, FillsLargeSolidsLittle) {
