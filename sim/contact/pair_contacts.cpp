@@ -3,10 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/parallel.h"
+
 namespace vivify::sim {
 namespace {
 
+constexpr std::size_t kContactsOfTask = 64;
+
+// What `value_of` returns for each contact.
+template <typename Value, typename Function>
+std::vector<Value> of_each(const std::vector<PairContact>& contacts, const Function& value_of) {
+  std::vector<Value> values(contacts.size());
+  const auto evaluate = [&](std::size_t task) {
+    const std::size_t end = std::min((task + 1) * kContactsOfTask, contacts.size());
+    for (std::size_t i = task * kContactsOfTask; i < end; ++i) values[i] = value_of(contacts[i]);
+  };
+  const std::size_t tasks = (contacts.size() + kContactsOfTask - 1) / kContactsOfTask;
+  if (tasks > 1) {
+    parallel_for(tasks, evaluate);
+  } else if (tasks == 1) {
+    evaluate(0);
+  }
+  return values;
+}
+
+// Of the normal force and of friction.
+struct Gradients {
+  Eigen::Vector3d gap, slip;
+};
+struct Hessians {
+  Eigen::Matrix3d gap, slip;
+};
+
 void add_forces(const Stencil& stencil, const Eigen::Vector3d& g, int dimension, Eigen::VectorXd& gradient) {
+  if (g.isZero(0)) return;
   for (std::size_t k = 0; k < stencil.vertices.size(); ++k) {
     gradient.segment(dimension * stencil.vertices[k], dimension) += stencil.weights[k] * g.head(dimension);
   }
@@ -16,6 +46,7 @@ void add_forces(const Stencil& stencil, const Eigen::Vector3d& g, int dimension,
 const int* add_block(const Stencil& stencil, const Eigen::Matrix3d& block, int dimension, const int* slot,
                      double* values) {
   const std::size_t count = stencil.vertices.size();
+  if (block.isZero(0)) return slot + static_cast<std::size_t>(dimension) * count * (count + 1) / 2;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const double weight = stencil.weights[i] * stencil.weights[j];
@@ -97,28 +128,34 @@ Eigen::Vector3d PairContacts::force_on_a(const PairContact& contact, const Eigen
 
 double PairContacts::energy(const Eigen::VectorXd& x) const {
   double sum = 0;
-  for (const PairContact& contact : contacts_) {
-    sum += contact.law.energy(distance(contact, x)) + contact.friction.energy(slip_offset(contact, x));
-  }
+  for (const double energy : of_each<double>(contacts_, [&](const PairContact& contact) {
+         return contact.law.energy(distance(contact, x)) + contact.friction.energy(slip_offset(contact, x));
+       }))
+    sum += energy;
   return sum;
 }
 
 void PairContacts::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const {
-  for (const PairContact& contact : contacts_) {
-    add_forces(contact.gap, -normal_force(contact, x) * contact.normal, dimension_, gradient);
-    add_forces(contact.slip, contact.friction.gradient(slip_offset(contact, x)), dimension_, gradient);
+  const auto gradients = of_each<Gradients>(contacts_, [&](const PairContact& contact) -> Gradients {
+    return {-normal_force(contact, x) * contact.normal, contact.friction.gradient(slip_offset(contact, x))};
+  });
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    add_forces(contacts_[i].gap, gradients[i].gap, dimension_, gradient);
+    add_forces(contacts_[i].slip, gradients[i].slip, dimension_, gradient);
   }
 }
 
 void PairContacts::add_hessian(const Eigen::VectorXd& x, SymmetricMatrix& matrix) const {
-  const int* slot = slots_.data();
-  for (const PairContact& contact : contacts_) {
+  const auto hessians = of_each<Hessians>(contacts_, [&](const PairContact& contact) -> Hessians {
     const Eigen::Matrix3d nn = contact.normal * contact.normal.transpose();
     const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - nn;
-    slot = add_block(contact.gap, contact.law.second(distance(contact, x)) * nn, dimension_, slot,
-                     matrix.values());
-    slot = add_block(contact.slip, T * contact.friction.hessian(slip_offset(contact, x)) * T, dimension_,
-                     slot, matrix.values());
+    return {contact.law.second(distance(contact, x)) * nn,
+            T * contact.friction.hessian(slip_offset(contact, x)) * T};
+  });
+  const int* slot = slots_.data();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    slot = add_block(contacts_[i].gap, hessians[i].gap, dimension_, slot, matrix.values());
+    slot = add_block(contacts_[i].slip, hessians[i].slip, dimension_, slot, matrix.values());
   }
 }
 
