@@ -95,7 +95,7 @@ Eigen::VectorXd Island::part(const Eigen::VectorXd& x, std::size_t m) const {
 }
 
 void Island::move_surfaces(const Eigen::VectorXd& x) const {
-  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].body->move_surface(part(x, m));
+  parallel_for(members_.size(), [&](std::size_t m) { members_[m].body->move_surface(part(x, m)); });
 }
 
 std::string Island::names() const {
@@ -126,10 +126,10 @@ void Island::bind(PairContacts& contacts) {
     workspace_->deadline = deadline_;
   }
   contacts.bind(*pattern_);
-  for (std::size_t m = 0; m < members_.size(); ++m) {
+  parallel_for(members_.size(), [&](std::size_t m) {
     BodyModel& model = members_[m].body->model();
     if (!fits || model.bound_to != pattern_.get()) model.bind(*pattern_, first_vertex_[m]);
-  }
+  });
 }
 
 std::size_t Island::member(int index) const {
