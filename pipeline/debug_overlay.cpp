@@ -14,6 +14,7 @@
 #include "pipeline/body_settings.h"
 #include "pipeline/body_shape.h"
 #include "pipeline/camera_path.h"
+#include "pipeline/handle_settings.h"
 #include "pipeline/scene_file.h"
 #include "pipeline/stages/stages.h"
 #include "render/lens.h"
@@ -25,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Colour kSticks = {60, 220, 130}, kSlips = {255, 90, 30}, kForce = {255, 225, 60},
-                 kGoal = {255, 110, 220}, kRestShape = {90, 200, 255}, kBody = {170, 170, 170},
-                 kShade = {0, 0, 0};
+                 kGoal = {255, 110, 220}, kRestShape = {90, 200, 255}, kHeld = {185, 140, 255},
+                 kBody = {170, 170, 170}, kShade = {0, 0, 0};
 constexpr double kShadeOpacity = 0.5;
 constexpr double kForceLength = 0.5;   // of the body's height: the arrow of a force as large as its weight
 constexpr double kLeastForce = 1e-3;   // of the weight that is drawn
@@ -54,6 +55,13 @@ void draw_target(Canvas& canvas, const Pixel& centre, double unit) {
 void draw_thin(Canvas& canvas, const Pixel& from, const Pixel& to, double unit, const Colour& colour) {
   canvas.line(from, to, unit + 1, kShade, 0.35);
   canvas.line(from, to, unit, colour);
+}
+
+void draw_cross(Canvas& canvas, const Pixel& centre, double unit) {
+  const Pixel falling(3 * unit, 3 * unit), rising(3 * unit, -3 * unit);
+  for (const Pixel& arm : {falling, rising})
+    canvas.line(centre - arm, centre + arm, unit + 1.5, kShade, kShadeOpacity);
+  for (const Pixel& arm : {falling, rising}) canvas.line(centre - arm, centre + arm, unit, kHeld);
 }
 
 // A line through pixels with an arrow's head at its end.
@@ -149,6 +157,7 @@ struct DebugOverlay::Scene {
 
   fs::path folder;
   Value settings;
+  double h = 0;  // of a step, s
   int frames = 0;
   std::vector<Drawn> bodies;
   std::vector<render::Camera> cameras;
@@ -159,11 +168,13 @@ struct DebugOverlay::Scene {
       throw Error(ErrorKind::io, "there are no simulated frames in " + (folder / "sim").string(),
                   "make them with `vivify simulate`");
     }
-    const double h = 1 / (settings["frames"]["fps"].as_number() *
-                          static_cast<double>(settings["frames"]["steps_per_frame"].as_integer()));
+    h = 1 / (settings["frames"]["fps"].as_number() *
+             static_cast<double>(settings["frames"]["steps_per_frame"].as_integer()));
+    const sim::WorldSettings world{settings["gravity"].as_vector3(), h};
     for (const Value& body : settings["bodies"].items()) {
-      bodies.push_back({std::make_unique<sim::Body>(simulated_body(folder, body),
-                                                    sim::WorldSettings{settings["gravity"].as_vector3(), h}),
+      sim::BodyInput input = simulated_body(folder, body);
+      input.handles = make_handles(body, "bodies[" + std::to_string(bodies.size()) + "]");
+      bodies.push_back({std::make_unique<sim::Body>(input, world),
                         load_outline(Hdf5Reader(folder / mesh_file(body)), body)});
     }
     cameras = frame_cameras(settings, folder, frames);
@@ -284,6 +295,21 @@ struct DebugOverlay::Scene {
     }
   }
 
+  // Where the handles of a body that is there want its vertices, and the way to them.
+  static void draw_handles(View& view, const sim::Body& body, double h) {
+    if (!view.state.has(group_of(body) + "/x")) return;
+    const RowMatrixXd x = view.state.matrix(group_of(body) + "/x");
+    const sim::Hold hold = body.handles().at(view.state.scalar("/t"), h);
+    for (const sim::Hold::Spring& spring : hold.springs()) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero();
+      place.head(x.cols()) = x.row(spring.vertex);
+      const auto at = view.pixel(place), to = view.pixel(spring.place);
+      if (!at || !to) continue;
+      draw_thin(view.canvas, *at, *to, view.unit, kHeld);
+      draw_cross(view.canvas, *to, view.unit);
+    }
+  }
+
   // An arc about the axis of a wanted turn (rad/s).
   static void draw_turn(View& view, const Eigen::Vector3d& centre, const Eigen::Vector3d& turn,
                         double radius) {
@@ -327,7 +353,10 @@ void DebugOverlay::draw(int frame, bool has_picture, Canvas& canvas) {
     Scene::draw_force(view, *scene_->bodies[static_cast<std::size_t>(who.first)].body,
                       push.place / push.pressure, push.force, 2.5);
   }
-  for (const Scene::Drawn& drawn : scene_->bodies) scene_->draw_goals(view, *drawn.body);
+  for (const Scene::Drawn& drawn : scene_->bodies) {
+    Scene::draw_handles(view, *drawn.body, scene_->h);
+    scene_->draw_goals(view, *drawn.body);
+  }
 }
 
 std::vector<DebugOverlay::Sign> DebugOverlay::legend() {
@@ -354,6 +383,7 @@ std::vector<DebugOverlay::Sign> DebugOverlay::legend() {
          }
          draw_arc(canvas, arc, unit);
        }},
+      {"held here", [](Canvas& canvas, const Pixel& at, double unit) { draw_cross(canvas, at, unit); }},
       {"rest shape",
        [](Canvas& canvas, const Pixel& at, double unit) {
          draw_thin(canvas, at - Pixel(8 * unit, 0), at + Pixel(8 * unit, 0), unit, kRestShape);

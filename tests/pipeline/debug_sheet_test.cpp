@@ -59,7 +59,7 @@ int count(const render::Image& image, const std::array<int, 3>& colour) {
 }
 
 constexpr std::array<int, 3> kSticks = {60, 220, 130}, kSlips = {255, 90, 30}, kForce = {255, 225, 60},
-                             kGoal = {255, 110, 220}, kRestShape = {90, 200, 255};
+                             kGoal = {255, 110, 220}, kRestShape = {90, 200, 255}, kHeld = {185, 140, 255};
 
 // A box slides on a plate: every contact is seen where a pinhole camera projects it, in the colour of slip,
 // until it rests.
@@ -113,6 +113,51 @@ TEST_F(DebugSheet, ShowsGoalsForcesAndRestShapesOverPictures) {
   // The rest is the picture.
   EXPECT_TRUE(std::equal(plain.values.begin(), plain.values.begin() + 3 * plain.width * (kGap + 20),
                          debug.values.begin()));
+}
+
+// A cross in the middle of which every held vertex wants to be, until the handle lets go.
+TEST_F(DebugSheet, HandlesAreDrawnWhereTheyWantTheBody) {
+  scene_.write("ball.obj", obj_text(box_mesh({0.4, 0.4, 0.4})));
+  scene_.change(
+      "    mesh: ball.obj\n",
+      "    mesh: ball.obj\n    handles: [{region: {min: [0, 0.9, 0], max: [1, 1, 1]}, until_s: 0.15, "
+      "motion: [{t_s: 0}, {t_s: 0.1, move: [0.5, 0.2, 0]}]}]\n");
+  scene_.change("controller: {type: hop, heading_deg: 90}", "controller: {type: rest}");
+  scene_.change("camera: {position: [0, 1, 4], target: [0, 0.5, 0], follow: ball}",
+                "camera: {position: [0, 0.5, 4], target: [0, 0.5, 0], fov_deg: 40}");
+  scene_.change("size: [32, 18]", "size: [640, 360]");
+  ASSERT_EQ(run("simulate", {"--frames", "1-5"}).code, 0);
+  ASSERT_EQ(sheet({"--debug", "--count", "5"}).code, 0);
+  const render::Image image = picture();
+  const auto crosses = [&](int frame) {  // pixels of their colour
+    int found = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x)
+        found += is_colour(image, {kGap + x, kGap + (frame - 1) * (kHeight + kGap) + y}, kHeld);
+    }
+    return found;
+  };
+  // Vertices at the end of the motion, projected along −z.
+  const double focal = kHeight / 2.0 / std::tan(20 * std::numbers::pi / 180);
+  const RowMatrixXd rest = Hdf5Reader(scene_.out() / "sim/frames/0001.h5").matrix("/bodies/ball/x");
+  int held = 0;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const Eigen::Vector3d place = rest.row(i).transpose() + Eigen::Vector3d(0.5, 0.2, 0);
+    if (rest(i, 1) < 0.5 - 0.4 + 0.9 * 0.8) continue;
+    ++held;
+    const double scale = focal / (4 - place.z());
+    const Eigen::Vector2i at(
+        kGap + std::floor(kWidth / 2.0 + scale * place.x()),
+        kGap + 3 * (kHeight + kGap) + std::floor(kHeight / 2.0 - scale * (place.y() - 0.5)));
+    bool seen = false;  // the shade of a cross beside it may lie over its middle
+    for (int y = -2; y <= 2; ++y) {
+      for (int x = -2; x <= 2; ++x) seen |= is_colour(image, at + Eigen::Vector2i(x, y), kHeld, 40);
+    }
+    EXPECT_TRUE(seen) << "vertex " << i << " at " << at.transpose();
+  }
+  EXPECT_GE(held, 4);
+  EXPECT_GE(crosses(4), 10);
+  EXPECT_EQ(crosses(5), 0);
 }
 
 // Flat bodies touch with a closed line, which has no sides to outline: the drawn surface has.
