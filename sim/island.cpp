@@ -208,11 +208,11 @@ PairContacts Island::pair_contacts(const std::vector<BodyPairs>& pairs, const st
   return contacts;
 }
 
-std::vector<BodyPairs> Island::near_members(const Eigen::VectorXd& x, double h) const {
+std::vector<BodyPairs> Island::near_members(const Eigen::VectorXd& x, double h, bool ahead) const {
   move_surfaces(x);
   std::vector<Eigen::VectorXd> moves;
   for (const Member& member : members_) moves.push_back(h * member.body->v());
-  return near_bodies(members_, moves);
+  return near_bodies(members_, moves, ahead);
 }
 
 // Whether every near place that touches is a contact of `contacts` whose frozen plane describes it.
@@ -359,7 +359,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     });
     bool hold = std::find(planes_hold.begin(), planes_hold.end(), false) == planes_hold.end();
     if (may_touch) {
-      places = near_members(solution.at.x, h);
+      places = near_members(solution.at.x, h, false);
       keep_edges(memory, places);
       hold = hold && pairs_hold(places, pairs, solution.at.x);
     }
@@ -438,8 +438,8 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
       } else {
         std::vector<Eigen::VectorXd> x;
         for (const Member& member : members_) x.push_back(member.body->x());
-        solved =
-            advance(end, h, share, wishes, before, colliders, near_members(joined(x), h), memory, records);
+        solved = advance(end, h, share, wishes, before, colliders, near_members(joined(x), h, true), memory,
+                         records);
       }
     }
     if (solved) break;

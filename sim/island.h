@@ -44,8 +44,8 @@ class Island {
   PairContacts pair_contacts(const std::vector<BodyPairs>& pairs, const std::vector<PairMemory>& memory,
                              const PairContacts* last);
   void bind(PairContacts& contacts);
-  // Where members are near one another when they are at x.
-  std::vector<BodyPairs> near_members(const Eigen::VectorXd& x, double h) const;
+  // Where members are near one another when they are at x, before (`ahead`) or after a step of h.
+  std::vector<BodyPairs> near_members(const Eigen::VectorXd& x, double h, bool ahead) const;
   bool pairs_hold(const std::vector<BodyPairs>& pairs, const PairContacts& contacts,
                   const Eigen::VectorXd& x) const;
   // Whether thin members would cross on straight lines from one state to another.

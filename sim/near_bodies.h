@@ -25,9 +25,11 @@ struct BodyPairs {
 // Where members are near each other, their surfaces where they were moved to: as far apart as their moves in
 // a step (d #V each, m) may bring them together. Bodies that fly side by side are near only if they are
 // close. In the order of the numbers (the members' order is ascending); bodies of different dimensions never
-// meet.
+// meet. Places that the bodies pass by are left out, or are those where they get to: at seams between bodies
+// that lie flush, and, while the moves are `ahead` (else they led to where the surfaces are), where a point
+// gets past an edge.
 std::vector<BodyPairs> near_bodies(const std::vector<Member>& members,
-                                   const std::vector<Eigen::VectorXd>& moves);
+                                   const std::vector<Eigen::VectorXd>& moves, bool ahead);
 
 // Whether a member is thin: what has no inside cannot be pushed back out.
 bool has_thin(const std::vector<Member>& members);

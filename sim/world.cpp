@@ -64,7 +64,7 @@ std::vector<BodyPairs> World::find_near() {
                [&](std::size_t m) { members_[m].body->move_surface(members_[m].body->x()); });
   std::vector<Eigen::VectorXd> moves;
   for (const Member& member : members_) moves.push_back(settings_.h * member.body->v());
-  return near_bodies(members_, moves);
+  return near_bodies(members_, moves, true);
 }
 
 std::vector<Body::Wish> World::wishes() {
@@ -149,7 +149,7 @@ World::Meetings World::met(const std::vector<Body::State>& before, const std::ve
   const Links crossing = crossing_bodies(members_, moves, apart);
   links.insert(links.end(), crossing.begin(), crossing.end());
   if (links.empty()) return meetings;
-  meetings.near = near_bodies(members_, moves);
+  meetings.near = near_bodies(members_, moves, true);
   std::erase_if(meetings.near, [&](const BodyPairs& between) {
     return std::find(links.begin(), links.end(), std::pair(between.a, between.b)) == links.end();
   });
