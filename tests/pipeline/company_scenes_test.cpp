@@ -62,7 +62,7 @@ TEST(CompanyScenes, ACupHopsOverSoftObstacles) {
   for (const std::string ball : {"ball1", "ball2", "ball3"}) {
     trodden_on += run.least(ball, "min_element_ratio") < 0.8;
     EXPECT_GT(run.least(ball, "min_element_ratio"), 0) << "no element turned inside out";
-    EXPECT_NEAR(run.at(ball, "com_y_m", 1), 0.06, 0.005) << "it lies on the table again";
+    EXPECT_NEAR(run.at(ball, "com_y_m", 1), 0.06, 0.01) << "it lies on the table again";
   }
   EXPECT_GE(trodden_on, 2);
 }
