@@ -6,12 +6,17 @@ import face
 import files
 import surface
 
+FACE = {  # looks of what faces have in common
+    "eye_white": ((0.86, 0.86, 0.84), 0.06), "pupil": ((0.006, 0.005, 0.004), 0.06), "mouth": ((0.16, 0.012, 0.014), 0.3),
+    "tongue": ((0.75, 0.17, 0.14), 0.25), "teeth": ((0.85, 0.82, 0.74), 0.1), "blush": ((0.85, 0.26, 0.20), 0.3),
+}
+
 
 def glb(name, script, body, set_on, looks, genus=0):
     """Bytes of the character's GLB.
 
     body: vertices, triangles and the part of each triangle, standing on y = 0. set_on: (part, vertices, triangles), each
-    closed. looks: part -> (linear RGB, roughness), for other viewers; the scene file has its own.
+    closed. looks: part -> (linear RGB, roughness), what parts look like that a scene gives no `looks`.
     """
     vertices, triangles, names = body
     vertices = vertices.astype(np.float32).astype(float)

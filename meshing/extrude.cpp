@@ -187,6 +187,9 @@ TriangleMesh extrude(const Outline& outline, double depth, double bevel) {
     }
     before += n;
   }
+  const Eigen::RowVector2d low = mesh.V.leftCols<2>().colwise().minCoeff(),
+                           high = mesh.V.leftCols<2>().colwise().maxCoeff();
+  mesh.UV = (mesh.V.leftCols<2>().rowwise() - low).array().rowwise() / (high - low).array();
   mesh.part_names = {"front", "side", "back"};
   mesh.face_part = Eigen::VectorXi::Constant(mesh.F.rows(), 1);
   mesh.face_part.head(flat).setConstant(0);

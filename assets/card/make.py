@@ -10,14 +10,15 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import files
 import generator
+from picture import Picture
 
 WIDTH, HEIGHT = 0.7, 1.0  # m
 CORNER = 0.045  # cut off the corners (m); a coarse shell keeps straight cuts
 FOOT, ARCH = 0.24, 0.055  # where the feet end (m from the middle), and the height of the arch between them
 COLUMNS, ROWS = 64, 84
 PIXELS = (1000, 700)
-PAPER, INK, WHITE, BLUE, MOUTH, ROSE = (np.array(c, float) for c in (
-    (250, 244, 230), (24, 22, 30), (252, 252, 250), (52, 112, 168), (196, 54, 58), (232, 132, 122)))
+PAPER, INK, WHITE = (250, 244, 230), (24, 22, 30), (252, 252, 250)  # sRGB
+BLUE, MOUTH, ROSE = (52, 112, 168), (196, 54, 58), (232, 132, 122)
 
 
 def card():
@@ -66,14 +67,8 @@ def letter(x, y):
 
 def picture():
     """(indices, palette) of the card's picture."""
-    rows, columns = PIXELS
-    y, x = np.meshgrid(HEIGHT * (1 - (np.arange(rows) + 0.5) / rows), WIDTH * ((np.arange(columns) + 0.5) / columns - 0.5),
-                       indexing="ij")
-    image, pixel = np.broadcast_to(PAPER, (*PIXELS, 3)).copy(), HEIGHT / rows
-
-    def lay(distance, color, strength=1.0):
-        share = strength * np.clip(0.5 - distance / (1.4 * pixel), 0, 1)[..., None]
-        image[:] = image + share * (color - image)
+    image = Picture(PIXELS, (-WIDTH / 2, 0), (WIDTH / 2, HEIGHT), PAPER)
+    x, y, lay = image.x, image.y, image.lay
 
     def oval(cx, cy, a, b):
         return (np.hypot((np.abs(x) - cx) / a, (y - cy) / b) - 1) * min(a, b)
@@ -98,14 +93,7 @@ def picture():
     lay(np.maximum(np.maximum(smile, np.hypot(x / 0.078, (y - 0.430) / 0.056) * 0.056 - 0.056), -1), WHITE)
     inner = np.maximum(smile + 0.008, np.hypot(x / 0.069, (y - 0.430) / 0.047) * 0.047 - 0.047)
     lay(inner, MOUTH)
-
-    ramp = np.linspace(0, 1, 32)[:, None]
-    pairs = [(PAPER, INK), (INK, WHITE), (WHITE, BLUE), (BLUE, INK), (WHITE, MOUTH), (INK, ROSE), (BLUE, WHITE)]
-    palette = np.round(np.concatenate([a + ramp * (b - a) for a, b in pairs])).astype(np.uint8)
-    flat = np.round(image).reshape(-1, 3)
-    colors, inverse = np.unique(flat, axis=0, return_inverse=True)
-    nearest = np.argmin(np.sum((colors[:, None] - palette[None].astype(float))**2, axis=2), axis=1)
-    return nearest[inverse.reshape(-1)].reshape(PIXELS).astype(np.uint8), palette
+    return image.indexed()
 
 
 def make():
@@ -113,7 +101,8 @@ def make():
     print(f"card: {len(triangles)} triangles, {len(vertices)} vertices, lowest {vertices[:, 1].min():.4f} m")
     part = {"name": "card", "positions": vertices, "triangles": triangles, "uv": uv, "color": (1.0, 1.0, 1.0),
             "metallic": 0.0, "roughness": 0.4}
-    return {"card.glb": files.glb_bytes("card", [part], generator="assets/card/make.py"), "card.png": files.png_bytes(*picture())}
+    return {"card.glb": files.glb_bytes("card", [part], generator="assets/card/make.py"),
+            "card.png": files.png_bytes(*picture())}
 
 
 if __name__ == "__main__":

@@ -66,6 +66,19 @@ TEST(Extrude, VolumeOfABevelledBox) {
   EXPECT_NEAR(signed_volume(extrude(outline, depth, r)), exact, 0.02);
 }
 
+// The lower left corner of the box around the outline is that of a picture; so for the upper right one.
+TEST(Extrude, APictureFillsTheBoxAroundTheOutline) {
+  const Outline outline = outline_of({shapes::letter_i()});
+  const TriangleMesh mesh = extrude(outline, 0.1, 0.01);
+  const Eigen::AlignedBox2d box = box_of(outline.loops);
+  ASSERT_EQ(mesh.UV.rows(), mesh.V.rows());
+  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
+    const Eigen::Vector2d at =
+        box.min() + Eigen::Vector2d(mesh.UV.row(i).transpose()).cwiseProduct(box.sizes());
+    EXPECT_NEAR((at - mesh.V.row(i).head<2>().transpose()).norm(), 0, 1e-12);
+  }
+}
+
 // Edges of the flat faces and along the sides are short against the letter, and there are no slivers.
 TEST(Extrude, BendsSmoothly) {
   const Outline outline = outline_of({shapes::letter_i()});
