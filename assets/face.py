@@ -22,7 +22,8 @@ class Face:
         p, n = self.frame(u, v)
         top = p + n * lift[..., None]
         count = rings * around
-        vertices = np.concatenate([top[:1, 0], top[1:].reshape(-1, 3), (p - n * 0.006 + n * np.broadcast_to(ground, u.shape)[..., None])[:1, 0]])
+        below = p + n * (np.broadcast_to(ground, u.shape)[..., None] - 0.006)
+        vertices = np.concatenate([top[:1, 0], top[1:].reshape(-1, 3), below[:1, 0]])
         triangles = []
         ids = 1 + np.arange(count).reshape(rings, around)
         for k in range(around):
@@ -77,7 +78,8 @@ class Face:
         k = width / 0.1  # sizes were found for an eye of half width 0.1 m
         iu, iv = u + look[0] * width, v + look[1] * height
         ia, ib = pupil * width, pupil * height
-        parts = [("eye_white", *self.dome(ellipse(u, v, width, height, turn), bulge, sink=0.004 * k, rings=12, around=around)),
+        ball = ellipse(u, v, width, height, turn)
+        parts = [("eye_white", *self.dome(ball, bulge, sink=0.004 * k, rings=12, around=around)),
                  ("iris", *self.dome(ellipse(iu, iv, ia, ib), 0.0035 * k, base, 8.0, 0.003 * k, 10, around)),
                  ("pupil", *self.dome(ellipse(iu, iv, 0.66 * ia, 0.66 * ib), 0.0065 * k, base, 8.0, -0.002 * k, 8, around)),
                  ("eye_white", *self.dome(ellipse(iu - 0.34 * ia, iv + 0.42 * ib, 0.31 * ia, 0.29 * ib), 0.0095 * k, base,

@@ -23,7 +23,7 @@ PLANKS = np.array([9.6, 7.2])  # metres of teacup/wood.png: along the grain, acr
 
 
 def section(half, thick, edge):
-    """Outline (#P by 2: across, up) of a slab below y = 0 with round upper edges, against the clock, and its length there."""
+    """Outline (#P by 2: across, up) of a slab below y = 0 with round upper edges, against the clock, and the arc lengths."""
     turn = np.linspace(0, np.pi / 2, 7)
     right = np.stack([half - edge + edge * np.cos(turn), edge * np.sin(turn) - edge], axis=1)
     line = np.concatenate([[(half, -thick)], right, np.linspace(half - edge, edge - half, 14)[1:-1, None] * (1, 0),
@@ -72,7 +72,8 @@ def ramp():
 def dunes():
     x = np.linspace(-3.0, 17.0, 401)
     fade = np.clip((x - 0.5) / 1.0, 0, 1) * np.clip((16.0 - x) / 1.0, 0, 1)
-    rise = 0.034 * np.sin(2 * np.pi * x / 1.83 + 0.4) + 0.026 * np.sin(2 * np.pi * x / 1.07) + 0.040 * np.sin(2 * np.pi * x / 3.9 + 2.0)
+    turns = 2 * np.pi * x
+    rise = 0.034 * np.sin(turns / 1.83 + 0.4) + 0.026 * np.sin(turns / 1.07) + 0.040 * np.sin(turns / 3.9 + 2.0)
     line, _ = section(1.5, 0.5, 0.15)
     vertices, triangles = sweep(line, np.stack([x, fade**2 * (3 - 2 * fade) * rise], axis=1))
     return vertices[:, [2, 1, 0]] * (1, 1, -1), triangles

@@ -53,6 +53,7 @@ class Design:
     face_height: float = 0.47  # of its middle (m)
     belly: float = 0.59        # radius that turns distances on the face into angles (m)
     mood: Mood = dataclasses.field(default_factory=Mood)
+    looks: dict = dataclasses.field(default_factory=dict)  # instead of those of LOOKS
 
     def factor(self, y):
         return np.interp(y, *np.array(self.radii).T)
@@ -323,12 +324,13 @@ def body(profile):
     triangles = quads_to_triangles(vertices, quads)
     names = [part for part in parts for _ in (0, 1)]
     # The two discs: the underside and the tea.
-    n = len(vertices)
-    v, f = disc(index(0, np.arange(AROUND)), np.multiply((0.175, 0.115, 0.06, 0.03), design.factor(0.03)), float(rz[0, 1]), n)
+    under = np.multiply((0.175, 0.115, 0.06, 0.03), design.factor(0.03))
+    v, f = disc(index(0, np.arange(AROUND)), under, float(rz[0, 1]), len(vertices))
     vertices, triangles, names = np.concatenate([vertices, v]), np.concatenate([triangles, f]), names + ["foot"] * len(f)
-    n = len(vertices)
-    v, f = disc(index(len(lengths) - 1, np.arange(AROUND)), np.multiply((0.41, 0.29, 0.15, 0.07), design.factor(0.828)), float(rz[-1, 1]), n)
-    vertices, triangles, names = np.concatenate([vertices, v]), np.concatenate([triangles, f[:, ::-1]]), names + ["tea"] * len(f)
+    tea = np.multiply((0.41, 0.29, 0.15, 0.07), design.factor(0.828))
+    v, f = disc(index(len(lengths) - 1, np.arange(AROUND)), tea, float(rz[-1, 1]), len(vertices))
+    vertices, triangles = np.concatenate([vertices, v]), np.concatenate([triangles, f[:, ::-1]])
+    names += ["tea"] * len(f)
     if signed_volume(vertices, triangles) < 0:
         triangles = triangles[:, ::-1]
     used, triangles = np.unique(triangles, return_inverse=True)  # the openings left vertices without faces
@@ -364,11 +366,17 @@ def face_parts(profile):
 
         look_u, look_v = eye_u - 0.010 * side, eye_v
         parts.append(("eye_white", *face.dome(ellipse(eye_u, eye_v, eye_a, eye_b, turn), eye_h, rings=12)))
-        parts.append(("iris", *face.dome(ellipse(look_u, look_v, 0.077 * mood.iris, 0.097 * mood.iris), 0.0035, eye_base, 8.0, 0.003, 12)))
-        parts.append(("pupil", *face.dome(ellipse(look_u, look_v, 0.052 * mood.iris, 0.067 * mood.iris), 0.0065, eye_base, 8.0, -0.002, 10)))
-        parts.append(("eye_white", *face.dome(ellipse(look_u - 0.026 * mood.iris, look_v + 0.043 * mood.iris, 0.024 * mood.iris, 0.028 * mood.iris), 0.0095, eye_base, 4.0, -0.004, 6, 24)))
-        parts.append(("eye_white", *face.dome(ellipse(look_u + 0.028 * mood.iris, look_v - 0.040 * mood.iris, 0.011 * mood.iris, 0.012 * mood.iris), 0.0095, eye_base, 4.0, -0.004, 5, 16)))
-        parts.append(("blush", *face.dome(ellipse(0.315 * side, -0.085, 0.062, 0.040, 0.1 * side), 0.0022, None, 6.0, 0.003, 8)))
+
+        def spot(u, v, a, b):
+            """Outline of what lies on the eye, from the middle of the iris."""
+            return ellipse(look_u + mood.iris * u, look_v + mood.iris * v, mood.iris * a, mood.iris * b)
+
+        parts.append(("iris", *face.dome(spot(0, 0, 0.077, 0.097), 0.0035, eye_base, 8.0, 0.003, 12)))
+        parts.append(("pupil", *face.dome(spot(0, 0, 0.052, 0.067), 0.0065, eye_base, 8.0, -0.002, 10)))
+        for glint, fine in (((-0.026, 0.043, 0.024, 0.028), (6, 24)), ((0.028, -0.040, 0.011, 0.012), (5, 16))):
+            parts.append(("eye_white", *face.dome(spot(*glint), 0.0095, eye_base, 4.0, -0.004, *fine)))
+        cheek = ellipse(0.315 * side, -0.085, 0.062, 0.040, 0.1 * side)
+        parts.append(("blush", *face.dome(cheek, 0.0022, None, 6.0, 0.003, 8)))
         if mood.lid:
             height, slope = mood.lid
             parts.append(("lid", *face.dome(cap(eye_u, eye_v, 1.05 * eye_a, 1.05 * eye_b, height, slope * side), 0.016,
@@ -398,7 +406,8 @@ LOOKS = {
     "tea": ((0.16, 0.045, 0.008), 0.0, 0.05), "eye_white": ((0.92, 0.92, 0.90), 0.0, 0.05),
     "iris": ((0.17, 0.07, 0.025), 0.0, 0.05), "pupil": ((0.008, 0.006, 0.005), 0.0, 0.05),
     "brow": ((0.07, 0.03, 0.015), 0.0, 0.4), "mouth": ((0.16, 0.02, 0.02), 0.0, 0.3),
-    "tongue": ((0.80, 0.24, 0.20), 0.0, 0.3), "lid": ((0.30, 0.58, 0.60), 0.0, 0.15), "blush": ((0.90, 0.36, 0.30), 0.0, 0.5),
+    "tongue": ((0.80, 0.24, 0.20), 0.0, 0.3), "lid": ((0.30, 0.58, 0.60), 0.0, 0.15),
+    "blush": ((0.90, 0.36, 0.30), 0.0, 0.5),
 }
 BODY_PARTS = ("foot", "porcelain", "gold", "band", "inside", "tea")
 
@@ -409,6 +418,7 @@ def make(design):
     vertices, triangles, names = body(profile)
     vertices = vertices.astype(np.float32).astype(float)
     parts = merge([(name, vertices, triangles[names == name]) for name in BODY_PARTS] + face_parts(profile))
-    out = [{"name": name, "positions": v, "triangles": f, "color": LOOKS[name][0], "metallic": LOOKS[name][1],
-            "roughness": LOOKS[name][2]} for name, (v, f) in parts.items()]
+    looks = LOOKS | design.looks
+    out = [{"name": name, "positions": v, "triangles": f, "color": looks[name][0], "metallic": looks[name][1],
+            "roughness": looks[name][2]} for name, (v, f) in parts.items()]
     return out, (vertices, triangles)

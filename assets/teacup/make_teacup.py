@@ -22,14 +22,20 @@ import wood
 from surface import verify
 
 
+COFFEE = ((0.035, 0.012, 0.004), 0.0, 0.06)
+PLUM, MUSTARD = ((0.30, 0.055, 0.13), 0.0, 0.1), ((0.66, 0.34, 0.03), 0.0, 0.1)
 DESIGNS = {
     "teacup": cup.Design(),
-    "mug": cup.Design(height=1.25, radii=((0.0, 1.02), (0.10, 1.0), (0.25, 0.80), (0.5, 0.735), (0.75, 0.77), (1.0, 0.76)),
-                      reach=0.85, thickness=1.0, face=0.95, face_height=0.55, belly=0.440,
-                      mood=cup.Mood(iris=0.95, brow_lift=0.010, brow_tilt=0.0, lid=(0.18, 0.10), mouth=(0.070, 0.030, 0.030))),
-    "espresso": cup.Design(height=0.66, radii=((0.0, 0.70), (0.1, 0.62), (0.3, 0.57), (0.6, 0.63), (0.85, 0.68), (1.0, 0.70)),
-                           reach=0.6, thickness=0.7, face=0.62, face_height=0.49, belly=0.36,
-                           mood=cup.Mood(iris=0.60, brow_lift=0.035, brow_tilt=0.02, mouth=(0.056, 0.095, -0.004))),
+    "mug": cup.Design(
+        height=1.25, radii=((0.0, 1.02), (0.10, 1.0), (0.25, 0.80), (0.5, 0.735), (0.75, 0.77), (1.0, 0.76)),
+        reach=0.85, thickness=1.0, face=0.95, face_height=0.55, belly=0.440,
+        mood=cup.Mood(iris=0.95, brow_lift=0.010, brow_tilt=0.0, lid=(0.18, 0.10), mouth=(0.070, 0.030, 0.030)),
+        looks={"porcelain": PLUM, "lid": PLUM, "tea": COFFEE}),
+    "espresso": cup.Design(
+        height=0.66, radii=((0.0, 0.70), (0.1, 0.62), (0.3, 0.57), (0.6, 0.63), (0.85, 0.68), (1.0, 0.70)),
+        reach=0.6, thickness=0.7, face=0.62, face_height=0.49, belly=0.36,
+        mood=cup.Mood(iris=0.60, brow_lift=0.035, brow_tilt=0.02, mouth=(0.056, 0.095, -0.004)),
+        looks={"porcelain": MUSTARD, "tea": COFFEE}),
 }
 
 
