@@ -4,53 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 
-#include "tests/common/temporary_folder.h"
-#include "tests/pipeline/program.h"
-#include "tests/pipeline/simulated_run.h"
+#include "tests/pipeline/scene_run.h"
 
 namespace vivify::pipeline {
 namespace {
 
-using testing_support::Steps;
+using testing_support::SceneRun;
 
 constexpr double kCupHeight = 0.9;  // m
-
-// A simulated scene of configs/, and the rows of steps.csv of each body.
-class SceneRun {
- public:
-  explicit SceneRun(const std::string& scene) {
-    const testing_support::Outcome outcome =
-        testing_support::vivify({"simulate", VIVIFY_SOURCE_DIR "/configs/" + scene, "-o",
-                                 (folder_ / "out").string(), "--progress=none", "-q"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    steps_.emplace(folder_ / "out/sim/steps.csv");
-    for (std::size_t i = 0; i < steps_->size(); ++i) rows_[steps_->text("body", i)].push_back(i);
-  }
-  const Steps& steps() const { return *steps_; }
-  const std::vector<std::size_t>& rows(const std::string& body) const { return rows_.at(body); }
-  double at(const std::string& body, const std::string& column, double share) const {
-    const std::vector<std::size_t>& rows = rows_.at(body);
-    return (*steps_)(column, rows[static_cast<std::size_t>(share * static_cast<double>(rows.size() - 1))]);
-  }
-  double least(const std::string& body, const std::string& column) const {
-    double value = INFINITY;
-    for (const std::size_t row : rows_.at(body)) value = std::min(value, (*steps_)(column, row));
-    return value;
-  }
-  double most(const std::string& body, const std::string& column) const {
-    double value = -INFINITY;
-    for (const std::size_t row : rows_.at(body)) value = std::max(value, (*steps_)(column, row));
-    return value;
-  }
-
- private:
-  testing_support::TemporaryFolder folder_;
-  std::optional<Steps> steps_;
-  std::map<std::string, std::vector<std::size_t>> rows_;
-};
 
 TEST(CompanyScenes, ACupHopsOverSoftObstacles) {
   const SceneRun run("obstacles.yaml");
@@ -96,7 +58,7 @@ TEST(CompanyScenes, ACupIsLiftedByItsEarWhenABallDropsIn) {
   // In the air only its weight and the handle change the momentum of the cup: in every step they tell the
   // same mass.
   const std::vector<std::size_t>& rows = run.rows("cup");
-  const Steps& steps = run.steps();
+  const testing_support::Steps& steps = run.steps();
   double least = INFINITY, most = 0;
   int in_the_air = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {

@@ -1,0 +1,29 @@
+// The scenes of Table 1 that take longer.
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/cast.h"
+
+namespace vivify::pipeline {
+namespace {
+
+using testing_support::expect_laws;
+using testing_support::flights_of;
+using testing_support::SceneRun;
+
+TEST(Cast, CheesyRunsFromTheGrapes) {
+  constexpr double kLength = 1.04;  // m
+  const SceneRun run("cheesy.yaml");
+  expect_laws(run, {.body = "cheesy", .height = 0.985});
+  const std::vector<std::size_t>& rows = run.rows("cheesy");
+  EXPECT_GE(run.centre(rows.front()).x() - run.centre(rows.back()).x(), 5 * kLength);
+  EXPECT_GE(flights_of(run, "cheesy"), 8);
+  for (int i = 1; i <= 6; ++i) {
+    const std::string grape = "grape" + std::to_string(i);
+    EXPECT_GE(run.at(grape, "com_x_m", 0) - run.at(grape, "com_x_m", 1), 5) << "it is after her";
+    EXPECT_LE(run.most(grape, "residual_rel"), 1e-8);
+    EXPECT_GT(run.least(grape, "min_element_ratio"), 0);
+  }
+}
+
+}  // namespace
+}  // namespace vivify::pipeline
