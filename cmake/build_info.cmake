@@ -19,7 +19,7 @@ endfunction()
 
 hash_sources(meshing common/ meshing/ pipeline/stages/ pipeline/placement pipeline/body_ pipeline/example_ pipeline/pose_file)
 hash_sources(sim common/ sim/ pipeline/stages/ pipeline/placement)
-hash_sources(render common/ render/ pipeline/stages/ pipeline/placement pipeline/camera_path pipeline/video)
+hash_sources(render common/ render/ pipeline/stages/ pipeline/placement pipeline/looks pipeline/camera_path pipeline/video)
 
 set(libraries "")
 string(REPLACE "|" ";" entries "${LIBRARIES}")

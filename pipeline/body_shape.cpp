@@ -9,6 +9,7 @@
 #include "meshing/shell_mesh.h"
 #include "meshing/tetrahedralize.h"
 #include "pipeline/body_settings.h"
+#include "pipeline/looks.h"
 #include "pipeline/placement.h"
 
 namespace vivify::pipeline {
@@ -32,7 +33,7 @@ BodyShape make_solid(const Scene& scene, const Value& body) {
   const std::string& name = body["name"].as_string();
   BodyShape shape;
   shape.surface = read_asset(scene, body);
-  part_materials(body, shape.surface.part_names);  // wrong part names are told before the long work
+  check_looks(body, shape.surface.part_names);  // wrong part names are told before the long work
   meshing::RepairedSurface repaired = meshing::repair_surface(shape.surface);
   for (const std::string& note : repaired.notes) log_info(name + ": " + note);
   meshing::TetrahedralizeResult result =
@@ -51,7 +52,7 @@ BodyShape make_solid(const Scene& scene, const Value& body) {
 
 BodyShape make_shell(const Scene& scene, const Value& body) {
   const TriangleMesh surface = read_placed_mesh(scene, body);
-  part_materials(body, surface.part_names);
+  check_looks(body, surface.part_names);
   const Value& wanted = body["triangles"]["vertices"];
   const meshing::ShellMesh shell =
       meshing::shell_mesh(surface, wanted.is_null() ? 0 : static_cast<int>(wanted.as_integer()));
@@ -75,7 +76,7 @@ BodyShape make_flat(const Scene& scene, const Value& body) {
   shape.surface =
       meshing::extrude(outline, body["extrude"]["depth"].as_number(), body["extrude"]["bevel"].as_number());
   shape.surface.V.col(2).array() += body["position"].as_vector3().z();
-  part_materials(body, shape.surface.part_names);
+  check_looks(body, shape.surface.part_names);
   shape.skin.embedding = meshing::embed(mesh.V, mesh.F, shape.surface.V.leftCols<2>());
   shape.skin.depth = shape.surface.V.col(2);
   warn_of_far_points(body["name"].as_string(), shape.skin.embedding, "triangles.vertices");
@@ -101,7 +102,7 @@ BodyShape make_rod(const Scene& scene, const Value& body) {
   shape.mesh = {rod.V, rod.E};
   shape.surface = std::move(skinned.surface);
   shape.skin = std::move(skinned.skin);
-  part_materials(body, shape.surface.part_names);
+  check_looks(body, shape.surface.part_names);
   return shape;
 }
 

@@ -1,33 +1,16 @@
 #include "pipeline/content_key.h"
 
-#include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "common/file.h"
+#include "common/gltf_file.h"
 #include "pipeline/version.h"
 
 namespace vivify::pipeline {
 namespace {
-
-// Names as they stand in a URI: %20 is a space.
-std::string decoded(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    int code = 0;
-    const char* const digits = uri.data() + i + 1;
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
-      name += static_cast<char>(code);
-      i += 2;
-    } else {
-      name += uri[i];
-    }
-  }
-  return name;
-}
 
 // Files that a mesh file refers to, as it names them.
 std::vector<std::string> companions(const std::filesystem::path& path) {
@@ -39,7 +22,7 @@ std::vector<std::string> companions(const std::filesystem::path& path) {
     for (const nlohmann::json& buffer : json["buffers"]) {
       if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
       const std::string uri = buffer["uri"];
-      if (!uri.starts_with("data:")) names.push_back(decoded(uri));
+      if (!uri.starts_with("data:")) names.push_back(decode_uri(uri));
     }
   } else if (ending == ".obj") {
     std::istringstream lines(read_text_file(path));

@@ -1,25 +1,13 @@
 #include "pipeline/placement.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <numbers>
 
 #include "common/error.h"
 #include "common/mesh_io.h"
-#include "common/text.h"
+#include "pipeline/looks.h"
 
 namespace vivify::pipeline {
-namespace {
-
-Schema looks_schema() {
-  return dictionary(
-      "Material of each part of the asset, by the name of the part in its file. `all` stands for every part "
-      "that is not named; without it such a part is grey.",
-      string("Name of a material."));
-}
-
-}  // namespace
-
 Schema placed_schema(std::string doc, bool mesh_required) {
   Schema mesh = path("Surface: OBJ, PLY, OFF, STL, glTF or GLB, in metres, +Y up.");
   if (mesh_required) mesh = std::move(mesh).required();
@@ -66,26 +54,6 @@ TriangleMesh read_placed_mesh(const Scene& scene, const Value& item) {
   TriangleMesh mesh = read_asset(scene, item);
   place(item, mesh.V);
   return mesh;
-}
-
-std::vector<std::string> part_materials(const Value& item, const std::vector<std::string>& part_names) {
-  const Value& looks = item["looks"];
-  for (const auto& [part, material] : looks.entries()) {
-    if (part == "all" || std::find(part_names.begin(), part_names.end(), part) != part_names.end()) continue;
-    const std::string nearest = nearest_word(part, part_names);
-    throw Error(ErrorKind::usage, item["name"].as_string() + ": its mesh has no part called '" + part + "'",
-                !nearest.empty()     ? "did you mean '" + nearest + "'?"
-                : part_names.empty() ? "its parts have no names; `all` stands for the whole mesh"
-                                     : "its parts are " + join_words(part_names),
-                material.where());
-  }
-  const std::string others = looks.has("all") ? looks["all"].as_string() : kDefaultMaterial;
-  std::vector<std::string> materials;
-  for (const std::string& part : part_names) {
-    materials.push_back(looks.has(part) ? looks[part].as_string() : others);
-  }
-  if (materials.empty()) materials.push_back(others);
-  return materials;
 }
 
 }  // namespace vivify::pipeline

@@ -1,17 +1,13 @@
-// Meshes of the scene, put where the scene says, with the materials of their parts.
+// Meshes of the scene, put where the scene says.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "common/mesh.h"
 #include "common/schema.h"
 #include "pipeline/scene_file.h"
 
 namespace vivify::pipeline {
-
-// Name of the material of parts that the scene gives none: a grey.
-inline constexpr const char* kDefaultMaterial = "(default)";
 
 // Keys of everything that is placed in the world: name, mesh, position, scale, heading_deg, looks.
 Schema placed_schema(std::string doc, bool mesh_required);
@@ -31,9 +27,5 @@ void place(const Value& item, Points2& V);
 // that cannot be read; the message names the object.
 TriangleMesh read_asset(const Scene& scene, const Value& item);
 TriangleMesh read_placed_mesh(const Scene& scene, const Value& item);
-
-// Material of each part of a mesh, from `looks`; parts that are not named take `all`. A mesh without named
-// parts has one part. Throws Error(usage) when `looks` names a part that the mesh does not have.
-std::vector<std::string> part_materials(const Value& item, const std::vector<std::string>& part_names);
 
 }  // namespace vivify::pipeline

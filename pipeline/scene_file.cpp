@@ -13,6 +13,7 @@
 #include "pipeline/body_settings.h"
 #include "pipeline/collider_settings.h"
 #include "pipeline/friction_settings.h"
+#include "pipeline/looks.h"
 #include "pipeline/placement.h"
 #include "pipeline/pose_file.h"
 #include "render/lens.h"
@@ -112,6 +113,7 @@ class SemanticCheck {
   void references() {
     names();
     looks();
+    asset_looks();
     bodies();
     colliders();
     check_friction(scene_.settings, errors_);
@@ -162,6 +164,18 @@ class SemanticCheck {
              where + ".looks." + part + " = " + material.as_string() + ": there is no such material",
              suggestion(material.as_string(), materials));
       }
+    });
+  }
+
+  // Read here, because their faults shall not come out after hours of simulation.
+  void asset_looks() {
+    each_placed([&](const Value& item, const std::string&) {
+      std::error_code ignored;
+      if (!item.has("mesh") ||
+          !std::filesystem::is_regular_file(scene_.resolve_path(item["mesh"].as_string()), ignored)) {
+        return;
+      }
+      attempt(item["mesh"], [&] { check_asset_looks(scene_, item); });
     });
   }
 

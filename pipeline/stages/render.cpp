@@ -10,6 +10,7 @@
 #include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
 #include "pipeline/frame_range.h"
+#include "pipeline/looks.h"
 #include "pipeline/placement.h"
 #include "pipeline/stages/stages.h"
 #include "render/scene.h"
@@ -18,25 +19,6 @@ namespace vivify::pipeline {
 namespace {
 
 constexpr long kUnitsPerFrame = 100;
-
-// A setting that the scene does not give, from its YAML text.
-Value built_in(const Schema& schema, const std::string& yaml) {
-  std::vector<Error> errors;
-  const ConfigNode node = parse_yaml(yaml, "built-in", errors);
-  Value value = errors.empty() ? resolve(schema, node, errors) : Value();
-  if (!errors.empty()) throw Error(ErrorKind::internal, errors.front().full_text());
-  return value;
-}
-
-render::Looks make_looks(const Scene& scene) {
-  render::Looks looks;
-  looks.folder = scene.folder;
-  for (const auto& [name, material] : scene.settings["materials"].entries()) looks.materials[name] = material;
-  looks.materials[kDefaultMaterial] = built_in(render::material_schema(), "{type: diffuse}");
-  looks.lights = scene.settings["lights"].items();
-  if (looks.lights.empty()) looks.lights = {built_in(render::light_schema(), "{type: environment}")};
-  return looks;
-}
 
 bool is_drawn(const Value& item) { return !item.has("visible") || item["visible"].as_bool(); }
 
@@ -54,7 +36,10 @@ std::string looks_key(const Job& job) {
   const Scene& scene = job.scene;
   ContentKey key("render");
   key.add("simulation", simulation_key(job));
-  for (const char* part : {"materials", "camera", "lights", "render"}) key.add(part, scene.settings[part]);
+  for (const char* part : {"camera", "render"}) key.add(part, scene.settings[part]);
+  const render::Looks looks = scene_looks(scene);
+  for (const auto& [name, material] : looks.materials) key.add(name, material);
+  for (const Value& light : looks.lights) key.add("light", light);
   // The smoothed path of the camera depends on the frames to come.
   if (scene.settings["camera"].has("follow")) key.add("frames", scene.frame_count);
   for (const Value& body : scene.settings["bodies"].items()) key.add("looks", body["looks"]);
@@ -66,7 +51,7 @@ std::string looks_key(const Job& job) {
     for (const char* part : {"position", "scale", "heading_deg", "looks"}) key.add(part, prop[part]);
     key.add_mesh_file(scene.resolve_path(prop["mesh"].as_string()));
   }
-  for (const std::filesystem::path& file : render::referenced_files(make_looks(scene))) key.add_file(file);
+  for (const std::filesystem::path& file : render::referenced_files(looks)) key.add_file(file);
   return key.hex();
 }
 
@@ -87,7 +72,7 @@ struct DrawnBody {
   RowMatrixXi elements;
 };
 
-DrawnBody load_body(const Job& job, const Value& body) {
+DrawnBody load_body(const Job& job, const Value& body, const render::Looks& looks) {
   const Hdf5Reader file(job.out / mesh_file(body));
   DrawnBody drawn;
   drawn.name = body["name"].as_string();
@@ -99,14 +84,14 @@ DrawnBody load_body(const Job& job, const Value& body) {
   if (file.has("/surface/face_part")) drawn.mesh.face_part = file.int_vector("/surface/face_part");
   std::vector<std::string> part_names;
   if (file.has("/surface/part_names")) part_names = file.texts("/surface/part_names");
-  drawn.mesh.part_materials = part_materials(body, part_names);
+  drawn.mesh.part_materials = part_materials(body, part_names, looks);
   return drawn;
 }
 
-render::Mesh drawn_mesh(const Value& object, TriangleMesh surface) {
+render::Mesh drawn_mesh(const Value& object, TriangleMesh surface, const render::Looks& looks) {
   render::Mesh mesh;
   mesh.name = object["name"].as_string();
-  mesh.part_materials = part_materials(object, surface.part_names);
+  mesh.part_materials = part_materials(object, surface.part_names, looks);
   mesh.V = std::move(surface.V);
   mesh.F = std::move(surface.F);
   mesh.UV = std::move(surface.UV);
@@ -135,27 +120,28 @@ std::optional<RowMatrixXd> body_positions(const Job& job, int frame, const std::
 
 void make(const Job& job, const std::vector<Product>& missing, Ledger& ledger, Progress& progress) {
   const Scene& scene = job.scene;
+  const render::Looks looks = scene_looks(scene);
   render::Frame frame;
   std::vector<DrawnBody> bodies;
-  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body));
+  for (const Value& body : scene.settings["bodies"].items()) bodies.push_back(load_body(job, body, looks));
   frame.meshes.resize(bodies.size());
   std::vector<MovingObject> moving;
   for (const Value& collider : drawn_objects(scene, "colliders")) {
-    frame.meshes.push_back(drawn_mesh(collider, collider_surface(scene, collider)));
+    frame.meshes.push_back(drawn_mesh(collider, collider_surface(scene, collider), looks));
     sim::RigidPath path = collider_path(collider, collider["name"].as_string());
     if (path.moves()) {
       moving.push_back({frame.meshes.size() - 1, frame.meshes.back().V, std::move(path)});
     }
   }
   for (const Value& prop : drawn_objects(scene, "props")) {
-    frame.meshes.push_back(drawn_mesh(prop, read_placed_mesh(scene, prop)));
+    frame.meshes.push_back(drawn_mesh(prop, read_placed_mesh(scene, prop), looks));
   }
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
     render::Mesh& mesh = i < bodies.size() ? bodies[i].mesh : frame.meshes[i];
     mesh.object_id = static_cast<int>(i) + 1;
   }
 
-  const render::Renderer renderer(make_looks(scene));
+  const render::Renderer renderer(looks);
   const render::RenderSettings settings = render::make_settings(scene.settings["render"]);
   const std::vector<render::Camera> cameras = frame_cameras(scene.settings, job.out, scene.frame_count);
 

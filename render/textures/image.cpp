@@ -1,21 +1,44 @@
 #include "render/textures/image.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <utility>
 
+#include "common/gltf_file.h"
 #include "render/textures/texture.h"
 
 namespace vivify::render {
 
 float srgb_to_linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
-Picture read_picture(const std::filesystem::path& file, const std::string& colorspace,
-                     const Location& where) {
+namespace {
+
+Bytes image_inside(const std::filesystem::path& file, long number, const Location& where) {
+  try {
+    return read_embedded_image(file, number);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::io, error.what(), error.hint(), where);
+  }
+}
+
+// The ending of the name tells the format.
+const char* name_of(const Bytes& image) {
+  return !image.empty() && image.front() == std::byte{0x89} ? "image.png" : "image.jpg";
+}
+
+}  // namespace
+
+Picture read_picture(const std::filesystem::path& file, const std::string& colorspace, const Location& where,
+                     std::optional<long> embedded) {
   const auto fail = [&](const std::string& reason) {
     return Error(ErrorKind::io, "the image '" + file.string() + "' cannot be read: " + reason, "", where);
   };
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+  const Bytes content = embedded ? image_inside(file, *embedded, where) : Bytes();
+  OIIO::Filesystem::IOMemReader memory(content.data(), content.size());
+  const std::unique_ptr<OIIO::ImageInput> input =
+      embedded ? OIIO::ImageInput::open(name_of(content), nullptr, &memory)
+               : OIIO::ImageInput::open(file.string());
   if (!input) throw fail(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   const int channels = spec.nchannels >= 3 ? 3 : 1;
@@ -87,8 +110,9 @@ namespace {
 class ImageTexture : public Texture {
  public:
   ImageTexture(const Value& value, const std::filesystem::path& folder)
-      : levels_(mip_levels(read_picture(folder / value["file"].as_string(), value["colorspace"].as_string(),
-                                        value["file"].where()))),
+      : levels_(mip_levels(read_picture(
+            folder / value["file"].as_string(), value["colorspace"].as_string(), value["file"].where(),
+            value.has("image") ? std::optional(value["image"].as_integer()) : std::nullopt))),
         scale_(static_cast<float>(value["scale"].as_number())) {}
 
   Vec3 value(const TexturePoint& point) const override {
@@ -113,21 +137,25 @@ class ImageTexture : public Texture {
 }  // namespace
 
 TextureEntry image_texture() {
-  return {"image",
-          [] {
-            return object("An image file, repeated in both directions.")
-                .field("file", path("The image file (PNG, JPEG, EXR, TIFF and others).").required())
-                .field("scale", number("How often the image is repeated per unit of the texture coordinates.")
-                                    .above(0)
-                                    .initially(1))
-                .field("colorspace",
-                       choice("How the values are encoded. `automatic`: files of integers are sRGB.",
-                              {"automatic", "srgb", "linear"})
-                           .initially("automatic"));
-          },
-          [](const Value& value, const std::filesystem::path& folder) -> std::unique_ptr<Texture> {
-            return std::make_unique<ImageTexture>(value, folder);
-          }};
+  return {
+      "image",
+      [] {
+        return object("An image file, repeated in both directions.")
+            .field("file", path("The image file (PNG, JPEG, EXR, TIFF and others).").required())
+            .field(
+                "image",
+                integer("The file is a GLB file, and this is the number of the image inside it.").at_least(0))
+            .field("scale", number("How often the image is repeated per unit of the texture coordinates.")
+                                .above(0)
+                                .initially(1))
+            .field("colorspace",
+                   choice("How the values are encoded. `automatic`: files of integers are sRGB.",
+                          {"automatic", "srgb", "linear"})
+                       .initially("automatic"));
+      },
+      [](const Value& value, const std::filesystem::path& folder) -> std::unique_ptr<Texture> {
+        return std::make_unique<ImageTexture>(value, folder);
+      }};
 }
 
 }  // namespace vivify::render

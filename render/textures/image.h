@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ struct Picture {
 };
 
 // Reads the first three channels (or the one) of an image file. `colorspace` is linear, srgb or automatic
-// (files of integers are sRGB). Throws Error(io) with `where` when it cannot be read whole.
-Picture read_picture(const std::filesystem::path& file, const std::string& colorspace, const Location& where);
+// (files of integers are sRGB); `embedded` is the number of an image inside a GLB file. Throws Error(io) with
+// `where` when it cannot be read whole.
+Picture read_picture(const std::filesystem::path& file, const std::string& colorspace, const Location& where,
+                     std::optional<long> embedded = {});
 
 // sRGB curve to linear light, for values in [0, 1] and beyond.
 float srgb_to_linear(float v);

@@ -9,6 +9,7 @@
 #include "render/image_io.h"
 #include "render/scene.h"
 #include "render/textures/image.h"
+#include "tests/common/glb.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/render/render_support.h"
 
@@ -16,6 +17,7 @@ namespace vivify::render {
 namespace {
 
 using testing_support::settings;
+using vivify::testing_support::glb_text;
 using vivify::testing_support::TemporaryFolder;
 
 // Red and green above, blue and white below.
@@ -50,6 +52,32 @@ TEST(Texture, OrientationAndEncoding) {
   EXPECT_EQ(look(", scale: 2").at({{0.125f, 0.375f}, 0}), Vec3(1, 0, 0));
   // A sample as wide as the picture sees its mean.
   EXPECT_NEAR(color.at({{0.3f, 0.9f}, 4}).x, (1 + 0.5029f) / 4, 1e-3f);
+}
+
+TEST(Texture, ImagesInsideAGlbLookLikeThoseInFiles) {
+  const TemporaryFolder folder;
+  const Bytes image = four_colors();
+  std::string binary = "something";
+  const std::string view = R"({"byteOffset":9,"byteLength":)" + std::to_string(image.size()) + "}";
+  binary.append(reinterpret_cast<const char*>(image.data()), image.size());
+  write_file_atomic(folder / "four.png", image);
+  write_file_atomic(folder / "cup.glb",
+                    glb_text(R"({"images":[{"bufferView":0}],"bufferViews":[)" + view + "]}", binary));
+  const Location where{"scene.yaml", 7, 1};
+  EXPECT_EQ(read_picture(folder / "cup.glb", "automatic", where, 0).texels,
+            read_picture(folder / "four.png", "automatic", where).texels);
+  const ColorSource color(
+      settings(material_schema(), "{type: diffuse, texture: {type: image, file: cup.glb, image: 0}}"),
+      folder.path());
+  EXPECT_EQ(color.at({{0.75f, 0.75f}, 0}).x, 0);  // 0.8 of green
+  EXPECT_FLOAT_EQ(color.at({{0.75f, 0.75f}, 0}).y, 0.8f);
+  try {
+    read_picture(folder / "cup.glb", "automatic", where, 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+    EXPECT_EQ(error.where().line, 7);
+  }
 }
 
 TEST(Texture, MipLevelsKeepTheMean) {
