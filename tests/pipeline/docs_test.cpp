@@ -57,7 +57,7 @@ TEST(Docs, EveryCommandWorks) {
   ProgramOptions options;
   options.folder = clone.path();
   int tried = 0;
-  for (const char* file : {"README.md", "docs/user_guide.md"}) {
+  for (const char* file : {"README.md", "docs/user_guide.md", "docs/directing.md"}) {
     for (const std::string& block : fenced_blocks(kSource / file, "sh")) {
       std::istringstream lines(block);
       for (std::string line; std::getline(lines, line);) {
@@ -101,29 +101,31 @@ TEST(Docs, SmallestSceneRuns) {
 }
 
 // Scenes without their first line, and files beside them that begin with their name.
-TEST(Docs, ScenesOfTheGuideAreRight) {
+TEST(Docs, ScenesOfTheGuidesAreRight) {
   const TemporaryFolder clone;
   make_clone(clone);
   ProgramOptions options;
   options.folder = clone.path();
   int scenes = 0;
-  for (const std::string& block : fenced_blocks(kSource / "docs/user_guide.md", "yaml")) {
-    if (block.starts_with("# ")) {
-      write_file_atomic(clone / "configs" / block.substr(2, block.find('\n') - 2), block);
-      continue;
+  for (const char* file : {"docs/user_guide.md", "docs/directing.md"}) {
+    for (const std::string& block : fenced_blocks(kSource / file, "yaml")) {
+      if (block.starts_with("# ")) {
+        write_file_atomic(clone / "configs" / block.substr(2, block.find('\n') - 2), block);
+        continue;
+      }
+      write_file_atomic(clone / "configs/guide.yaml", "version: 1\n" + block);
+      const Outcome outcome = vivify({"check", "configs/guide.yaml"}, options);
+      EXPECT_EQ(outcome.code, 0) << block << outcome.err;
+      EXPECT_EQ(outcome.err, "") << block;
+      ++scenes;
     }
-    write_file_atomic(clone / "configs/guide.yaml", "version: 1\n" + block);
-    const Outcome outcome = vivify({"check", "configs/guide.yaml"}, options);
-    EXPECT_EQ(outcome.code, 0) << block << outcome.err;
-    EXPECT_EQ(outcome.err, "") << block;
-    ++scenes;
   }
-  EXPECT_GE(scenes, 2);
+  EXPECT_GE(scenes, 4);
 }
 
 TEST(Docs, LinksLeadSomewhere) {
   const std::regex link(R"(\]\(([^)#]+)\))");
-  for (const char* file : {"README.md", "CHANGELOG.md", "docs/user_guide.md", "docs/reference.md"}) {
+  for (const char* file : {"README.md", "CHANGELOG.md", "docs/user_guide.md", "docs/directing.md", "docs/reference.md"}) {
     const std::string text = read_text_file(kSource / file);
     for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
       const std::string target = (*it)[1];
