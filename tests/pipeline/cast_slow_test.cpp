@@ -25,5 +25,13 @@ TEST(Cast, CheesyRunsFromTheGrapes) {
   }
 }
 
+TEST(Cast, TheCrossRunsOnItsGrowingArms) {
+  constexpr double kHeight = 0.993;  // m
+  const SceneRun run("cross.yaml");
+  expect_laws(run, {.body = "cross", .height = kHeight});
+  EXPECT_GE(run.at("cross", "com_x_m", 1) - run.at("cross", "com_x_m", 0), 6 * kHeight);
+  EXPECT_GE(flights_of(run, "cross"), 10);
+}
+
 }  // namespace
 }  // namespace vivify::pipeline
