@@ -29,7 +29,7 @@ struct Row {
 constexpr Row kRows[] = {
     {"sphere", "sphere", "246/24", 2.6},     {"tea_cups", "cup", "228-375/24", 5.64},
     {"tea_cups", "mug", "228-375/24", 5.64}, {"tea_cups", "espresso", "228-375/24", 5.64},
-    {"cheesy", "cheesy", "243/150", 8.6},
+    {"cheesy", "cheesy", "243/150", 8.6},    {"ace_cage", "ace", "231/42", 14.1},
     {"cross", "cross", "1128/6", 21.7},
 };
 

@@ -1,5 +1,6 @@
-"""Ace, the ace of spades: a flat card of 0.7 m by 1 m in the plane z = 0, standing on its two lower corners. Its picture,
-on both sides, is the same from the left and from the right. `python3 make.py` writes card.glb and card.png beside this
+"""Ace, the ace of spades: a card of 0.7 m by 1 m, bent about the vertical so that it can stand on its two lower corners:
+its chest is at +z, and it leans back until its middle is above its feet. Its picture, on both sides, is the same from the
+left and from the right. `python3 make.py` writes card.glb and card.png beside this
 file; `--check` compares instead."""
 
 import pathlib
@@ -14,7 +15,8 @@ from picture import Picture
 
 WIDTH, HEIGHT = 0.7, 1.0  # m
 CORNER = 0.045  # cut off the corners (m); a coarse shell keeps straight cuts
-FOOT, ARCH = 0.24, 0.055  # where the feet end (m from the middle), and the height of the arch between them
+FOOT, ARCH = 0.15, 0.055  # where the feet end (m from the middle), and the height of the arch between them
+RADIUS = 0.27  # of the bend (m)
 COLUMNS, ROWS = 64, 84
 PIXELS = (1000, 700)
 PAPER, INK, WHITE = (250, 244, 230), (24, 22, 30), (252, 252, 250)  # sRGB
@@ -25,10 +27,12 @@ def card():
     """Vertices, triangles and texture coordinates of the card."""
     half = WIDTH / 2
     x = np.linspace(0, half - CORNER, COLUMNS // 2 - 2)
+    for place in (FOOT, FOOT - ARCH):
+        x[np.argmin(np.abs(x - place))] = place
     x = np.concatenate([x, [half - CORNER / 2, half]])
     x = np.concatenate([-x[:0:-1], x])
     cut = np.maximum(np.abs(x) - half + CORNER, 0)
-    low = ARCH * np.maximum(np.cos(np.pi / 2 * x / FOOT), 0)**1.5 + cut
+    low = np.clip(FOOT - np.abs(x), 0, ARCH) + cut
     high = HEIGHT - cut
     t = np.linspace(0, 1, ROWS + 1)[:, None]
     y = low + t * (high - low)
@@ -40,7 +44,18 @@ def card():
     one = np.where(even, np.stack([a, b, c], 1), np.stack([a, b, d], 1))
     two = np.where(even, np.stack([a, c, d], 1), np.stack([b, c, d], 1))
     uv = np.stack([vertices[:, 0] / WIDTH + 0.5, 1 - vertices[:, 1] / HEIGHT], axis=1)
-    return vertices, np.stack([one, two], axis=1).reshape(-1, 3), uv
+    return bent(vertices), np.stack([one, two], axis=1).reshape(-1, 3), uv
+
+
+def bent(vertices):
+    """The flat card round a cylinder, leaning so far that its centre is above the middle of its feet."""
+    def depth(x):
+        return RADIUS * (np.cos(x / RADIUS) - 1)
+
+    x, y, _ = vertices.T
+    feet = depth(np.array([FOOT, WIDTH / 2 - CORNER])).mean()
+    lean = (feet - depth(np.linspace(0, WIDTH / 2, 100)).mean()) / (HEIGHT / 2)
+    return np.stack([RADIUS * np.sin(x / RADIUS), y, depth(x) + lean * y - depth(FOOT)], axis=1)
 
 
 def spade(x, y):

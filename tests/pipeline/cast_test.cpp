@@ -56,5 +56,30 @@ TEST(Cast, ThreeCupsHopInCompanyEachInItsRhythm) {
   EXPECT_GT(flights_of(run, "espresso"), flights_of(run, "mug"));
 }
 
+// How far a body has turned about the vertical from one frame to another, by its widest line at the first.
+double turn_deg(const SceneRun& run, const std::string& body, int from, int to) {
+  const Eigen::MatrixXd a = run.vertices(body, from), b = run.vertices(body, to);
+  Eigen::Index left = 0, right = 0;
+  a.col(0).minCoeff(&left);
+  a.col(0).maxCoeff(&right);
+  const Eigen::RowVector3d before = a.row(right) - a.row(left), after = b.row(right) - b.row(left);
+  return std::atan2(before.z() * after.x() - before.x() * after.z(),
+                    before.x() * after.x() + before.z() * after.z()) *
+         180 / std::numbers::pi;
+}
+
+TEST(Cast, AceHopsAlongOnItsCornersAndTurnsInTheAir) {
+  const SceneRun run("ace_cage.yaml");
+  expect_laws(run, {.body = "ace", .height = 1});
+  const std::vector<std::size_t>& rows = run.rows("ace");
+  EXPECT_NEAR(run.vertices("ace", 1).size(), 231, 23);
+  EXPECT_GE(flights_of(run, "ace"), 7) << "six along, one for the trick";
+  EXPECT_GE(run.centre(rows.front()).x() - run.centre(rows[rows.size() * 2 / 3]).x(), 0.7) << "its width";
+  EXPECT_NEAR(turn_deg(run, "ace", 1, 100), 0, 5) << "facing us on the way";
+  EXPECT_NEAR(std::abs(turn_deg(run, "ace", 100, 168)), 180, 30) << "half a turn";
+  EXPECT_LE(run.velocity(rows.back()).norm(), 0.1) << "and it stands";
+  EXPECT_LE(run.at("ace", "tilt_deg", 1), 5);
+}
+
 }  // namespace
 }  // namespace vivify::pipeline

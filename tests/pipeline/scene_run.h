@@ -5,11 +5,13 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/hdf5_file.h"
 #include "tests/common/temporary_folder.h"
 #include "tests/pipeline/program.h"
 #include "tests/pipeline/simulated_run.h"
@@ -54,6 +56,12 @@ class SceneRun {
   }
   Eigen::Vector3d velocity(std::size_t row) const {
     return {(*steps_)("vel_x_m_s", row), (*steps_)("vel_y_m_s", row), (*steps_)("vel_z_m_s", row)};
+  }
+  // Vertices of a body in a frame, counted from 1 (#V by d).
+  Eigen::MatrixXd vertices(const std::string& body, int frame) const {
+    char name[16];
+    std::snprintf(name, sizeof name, "%04d.h5", frame);
+    return Hdf5Reader(folder_ / "out/sim/frames" / name).matrix("/bodies/" + body + "/x");
   }
 
  private:
