@@ -30,7 +30,7 @@ constexpr Row kRows[] = {
     {"sphere", "sphere", "246/24", 2.6},     {"tea_cups", "cup", "228-375/24", 5.64},
     {"tea_cups", "mug", "228-375/24", 5.64}, {"tea_cups", "espresso", "228-375/24", 5.64},
     {"cheesy", "cheesy", "243/150", 8.6},    {"ace_cage", "ace", "231/42", 14.1},
-    {"cross", "cross", "1128/6", 21.7},
+    {"ace_examples", "ace", "231/3", 9.2},   {"cross", "cross", "1128/6", 21.7},
 };
 
 void simulate(const std::string& scene, const std::filesystem::path& out) {

@@ -81,5 +81,18 @@ TEST(Cast, AceHopsAlongOnItsCornersAndTurnsInTheAir) {
   EXPECT_LE(run.at("ace", "tilt_deg", 1), 5);
 }
 
+TEST(Cast, AceOfExamplesHopsAndTurnsAThirdRound) {
+  const SceneRun run("ace_examples.yaml");
+  expect_laws(run, {.body = "ace", .height = 1, .most_tilt_deg = 15});
+  const std::vector<std::size_t>& rows = run.rows("ace");
+  int hops = 0;  // they are too low for flights of a tenth of a second
+  for (std::size_t i = 2; i < rows.size(); ++i)
+    hops += run.steps()("contacts", rows[i]) == 0 && run.steps()("contacts", rows[i - 1]) == 0 &&
+            run.steps()("contacts", rows[i - 2]) != 0;
+  EXPECT_GE(hops, 7) << "six along, one for the trick";
+  EXPECT_GE(std::abs(turn_deg(run, "ace", 1, 168)), 90);
+  EXPECT_LE(run.velocity(rows.back()).norm(), 0.1) << "and it stands";
+}
+
 }  // namespace
 }  // namespace vivify::pipeline
