@@ -31,6 +31,10 @@ constexpr Row kRows[] = {
     {"tea_cups", "mug", "228-375/24", 5.64}, {"tea_cups", "espresso", "228-375/24", 5.64},
     {"cheesy", "cheesy", "243/150", 8.6},    {"ace_cage", "ace", "231/42", 14.1},
     {"ace_examples", "ace", "231/3", 9.2},   {"cross", "cross", "1128/6", 21.7},
+    {"letters", "S", "100-130/8-36", 0.8},   {"letters", "I", "54-64/3", 0.8},
+    {"letters", "G", "100-130/8-36", 0.8},   {"letters", "G2", "100-130/8-36", 0.8},
+    {"letters", "R", "66-104/20-28", 0.8},   {"letters", "A", "66-104/20-28", 0.8},
+    {"letters", "P", "54-64/3", 0.8},        {"letters", "H", "66-104/20-28", 0.8},
 };
 
 void simulate(const std::string& scene, const std::filesystem::path& out) {
