@@ -51,6 +51,19 @@ ContactSurface default_surface(const BodyInput& input, double layer) {
   return boundary_of(input.rest, solid ? 0 : radius);
 }
 
+// Normal forces of the colliders shared out to the vertices, N.
+Eigen::VectorXd vertex_loads(const ContactPoints& points, const std::vector<ContactMemory>& memory,
+                             Eigen::Index vertices) {
+  Eigen::VectorXd loads = Eigen::VectorXd::Zero(vertices);
+  for (int i = 0; i < points.size(); ++i) {
+    const ContactMemory& contact = memory[static_cast<std::size_t>(i)];
+    if (!contact.touching) continue;
+    for (int k = 0; k < points.corners(); ++k)
+      loads[points.vertices(i, k)] += points.weights(i, k) * contact.normal_force;
+  }
+  return loads;
+}
+
 // Throws Error(geometry) unless every element is of vertices with finite coordinates and every vertex of an
 // element.
 void check_mesh(const std::string& body, const SimMesh& mesh) {
@@ -216,7 +229,8 @@ OtherBody Body::seen() const {
 
 Body::Wish Body::wish(long step, const Ground& ground, Others others) {
   Wish wish;
-  wish.goals = controller_->goals({state_.x, state_.v, ground.load, ground.velocity, others});
+  const Eigen::VectorXd loads = vertex_loads(model_.contact_points, state_.contacts, model_.mass.size());
+  wish.goals = controller_->goals({state_.x, state_.v, ground.load, ground.velocity, others, loads});
   if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
     wish.q = model_.rest->basis().transpose() * *p;
   } else if (controller_->passive()) {

@@ -4,19 +4,23 @@
 
 #include "common/registry.h"
 #include "sim/control/controllers/blend.h"
+#include "sim/control/controllers/goals.h"
 #include "sim/control/controllers/hop.h"
 #include "sim/control/controllers/rest.h"
 #include "sim/control/controllers/roll.h"
 #include "sim/control/controllers/wait.h"
+#include "sim/control/controllers/walk.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 5> kControllers = {{
+constexpr std::array<ControllerEntry, 7> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
     {"roll", roll_controller_schema, make_roll_controller},
+    {"walk", walk_controller_schema, make_walk_controller},
     {"wait", wait_controller_schema, make_wait_controller},
+    {"goals", goals_controller_schema, make_goals_controller},
     {"blend", blend_controller_schema, make_blend_controller},
 }};
 

@@ -42,6 +42,7 @@ struct Observation {
   // Velocity in the coming step of the colliders that it stands on, m/s; nothing where it stands on none.
   std::optional<Eigen::Vector3d> ground = {};
   Others others = {};
+  Eigen::VectorXd loads = {};  // #V: the normal forces of colliders in the last step, shared out, N
 };
 
 class Controller {
