@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/file.h"
 #include "common/hdf5_file.h"
@@ -53,14 +54,16 @@ int count_steps(const std::vector<RowMatrixXd>& frames, const Foot& foot, double
 
 struct WalkScene {
   const char* name;
-  double dofs, parameters;  // of Table 1
+  double dofs, parameters;     // of Table 1
+  std::vector<double> places;  // x to walk to, m; the first is that of the scene
 };
 
 class WalkScenes : public ::testing::TestWithParam<WalkScene> {};
 
-TEST_P(WalkScenes, TakesStepsBothWaysAndStandsAtItsPlace) {
+TEST_P(WalkScenes, TakesStepsAndStandsAtItsPlace) {
   constexpr double kHeight = 1;
-  for (const int side : {1, -1}) {
+  for (const double place : GetParam().places) {
+    const int side = place > 0 ? 1 : -1;
     SCOPED_TRACE(side > 0 ? "to the right" : "to the left");
     const testing_support::TemporaryFolder folder;
     const std::filesystem::path out = folder / "out";
@@ -70,8 +73,9 @@ TEST_P(WalkScenes, TakesStepsBothWaysAndStandsAtItsPlace) {
                                         out.string(),
                                         "--progress=none",
                                         "-q"};
-    if (side < 0) {
-      command.insert(command.end(), {"--set", "bodies[0].controller.to=[-0.9, 0, 0]"});
+    if (place != GetParam().places.front()) {
+      command.insert(command.end(),
+                     {"--set", "bodies[0].controller.to=[" + std::to_string(place) + ", 0, 0]"});
     }
     const testing_support::Outcome outcome = testing_support::vivify(command);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -91,7 +95,7 @@ TEST_P(WalkScenes, TakesStepsBothWaysAndStandsAtItsPlace) {
     const int steps = count_steps(frames, left, kHeight, side) + count_steps(frames, right, kHeight, side);
     EXPECT_GE(steps, 8);
     const double middle = (left.place(frames.back()) + right.place(frames.back())) / 2;
-    EXPECT_NEAR(middle, side > 0 ? 1.4 : -0.9, 0.15);
+    EXPECT_NEAR(middle, place, 0.15);
 
     const Steps rows(out / "sim/steps.csv");
     EXPECT_LE(rows.largest("tilt_deg"), 45);
@@ -104,8 +108,10 @@ TEST_P(WalkScenes, TakesStepsBothWaysAndStandsAtItsPlace) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Castle, WalkScenes, ::testing::Values(WalkScene{"castle_solid.yaml", 142, 22}),
-                         [](const auto&) { return "Solid"; });
+INSTANTIATE_TEST_SUITE_P(Castle, WalkScenes,
+                         ::testing::Values(WalkScene{"castle_solid.yaml", 142, 22, {1.4, -0.9}},
+                                           WalkScene{"castle_rod.yaml", 64, 22, {0.9}}),
+                         [](const auto& tested) { return tested.index == 0 ? "Solid" : "Rod"; });
 
 }  // namespace
 }  // namespace vivify::pipeline
