@@ -20,6 +20,8 @@ TetMesh mesh_with_cgal(const TriangleMesh& closed_surface, double size) {
   namespace P = CGAL::parameters;
 
   const SurfaceMesh surface = to_surface_mesh(closed_surface);
+  // CGAL seeds its own generator, which the refinement may draw from, by the time of day.
+  CGAL::get_default_random() = CGAL::Random(0);
   CGAL::Random random(0);
   const Domain domain(surface, &random);
   const Criteria criteria(P::facet_angle = 25, P::facet_size = size, P::facet_distance = size / 8,

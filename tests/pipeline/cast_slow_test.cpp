@@ -33,5 +33,24 @@ TEST(Cast, TheCrossRunsOnItsGrowingArms) {
   EXPECT_GE(flights_of(run, "cross"), 10);
 }
 
+TEST(Cast, TheLettersStandInTheirPlaces) {
+  const SceneRun run("letters.yaml");
+  struct Letter {
+    std::string name;
+    double place, width;  // x of the centre of mass, and size; m
+  };
+  const std::vector<Letter> word = {{"S", -3.93, 0.79},  {"I", -3.11, 0.51}, {"G", -2.24, 0.97},
+                                    {"G2", -1.11, 0.97}, {"R", 0.06, 1.08},  {"A", 1.38, 1.09},
+                                    {"P", 2.48, 0.93},   {"H", 3.73, 1.17}};
+  for (const auto& [name, place, width] : word) {
+    expect_laws(run, {.body = name, .height = 1});
+    EXPECT_GE(run.at(name, "com_x_m", 0), place + 9) << name << " comes from the right";
+    EXPECT_GE(flights_of(run, name), 8) << name;
+    const std::vector<std::size_t>& rows = run.rows(name);
+    for (std::size_t i = rows.size() - rows.size() / 24; i < rows.size(); ++i)
+      EXPECT_NEAR(run.centre(rows[i]).x(), place, 0.2 * width) << name << " stays in the last second";
+  }
+}
+
 }  // namespace
 }  // namespace vivify::pipeline

@@ -31,7 +31,7 @@ TEST(GoalsController, FollowsKeysOfTheCentre) {
       "{type: goals, goals: [{along: [0, 2, 0], weight: 4, frequency: 5,"
       " keys: [{t: 0.1, value: 0}, {t: 0.3, value: 0.4, rate: 1}]}]}");
   const double height = centre_of_mass(actor.mass, actor.rest).y();
-  const std::vector<std::pair<double, double>> wanted = {{0, 0}, {0.2, 2.5}, {0.4, 1}, {0.4, 1}};
+  const std::vector<std::pair<double, double>> wanted = {{0, 2}, {0.2, 2.5}, {0.4, 1}, {0.4, 1}};
   for (const auto& [value, rate] : wanted) {
     const std::vector<Goal> goals = actor.step();
     ASSERT_EQ(goals.size(), 1U);
