@@ -62,6 +62,11 @@ class Face:
             triangles = triangles[:, ::-1]
         return vertices, triangles
 
+    def brow(self, side, middle, half, height, radius, points=25, **tube):
+        """A tube over the eye of one side (-1 or 1): u from middle - half to middle + half, v = height(t), t from -1 to 1."""
+        t = np.linspace(-1, 1, points)
+        return self.tube((middle + half * t) * side, height(t), radius * np.sqrt(np.maximum(1 - t**4, 0)), **tube)
+
     def eye(self, u, v, width, height, bulge, turn=0.0, look=(0.0, 0.0), pupil=0.62, lid=None, around=48):
         """Parts of an eye about (u, v) with half axes `width` and `height`: white, iris, pupil and two highlights.
 
@@ -113,6 +118,15 @@ def cap(cu, cv, a, b, height, slope):
         line = np.where(towards > 1e-9, (centre - height) / np.maximum(towards, 1e-9), np.inf)
         reach = rho * np.minimum(round_, line)
         return cu + a * reach * x, cv + b * (centre + reach * y)
+    return outline
+
+
+def lips(half, v, above, below, bend, over, tilt=0.0):
+    """Outline of a mouth about (0, v): `half` as wide, `above` and `below` as high, its ends raised by `bend` where u is
+    `over`, and turned by the slope `tilt`."""
+    def outline(rho, psi):
+        x, y = half * rho * np.cos(psi), rho * np.sin(psi)
+        return x, v + y * np.where(y > 0, above, below) + bend * (x / over)**2 + tilt * x
     return outline
 
 

@@ -23,8 +23,7 @@ void check_region(const Value& handle, const std::string& name, std::vector<Erro
 }
 
 sim::Region make_region(const Value& handle, const std::string& name) {
-  const Value& region = handle["region"];
-  return {name, region["min"].as_vector3(), region["max"].as_vector3(), {}, handle.where()};
+  return sim::region_between(handle["region"], name, handle.where());
 }
 
 }  // namespace vivify::pipeline

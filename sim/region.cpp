@@ -1,5 +1,7 @@
 #include "sim/region.h"
 
+#include <utility>
+
 namespace vivify::sim {
 namespace {
 
@@ -39,6 +41,10 @@ std::vector<int> vertices_in(const Region& region, const RowMatrixXd& V) {
 }
 
 }  // namespace
+
+Region region_between(const Value& corners, std::string handle, Location where) {
+  return {std::move(handle), corners["min"].as_vector3(), corners["max"].as_vector3(), {}, std::move(where)};
+}
 
 std::vector<std::vector<int>> held_vertices(std::span<const Region> regions, const RowMatrixXd& V) {
   std::vector<std::vector<int>> held;

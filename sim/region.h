@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/mesh.h"
+#include "common/value.h"
 
 namespace vivify::sim {
 
@@ -19,6 +20,9 @@ struct Region {
   std::vector<int> vertices = {};                  // that belong to it wherever they are
   Location where = {};                             // in the scene or pose file
 };
+
+// The region between the corners `min` and `max` of a setting.
+Region region_between(const Value& corners, std::string handle, Location where);
 
 // The vertices of V (#V by 2 or 3) in each region, in ascending order. Throws Error(usage) for a region
 // without vertices, and for a vertex that is in two.

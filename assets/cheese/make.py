@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import character
 import generator
 import sculpt
-from face import Face, ellipse
+from face import ellipse, Face, lips
 
 CELL = 0.0145  # m
 OUTLINE = [(-0.39, 0.0), (0.39, 0.0), (0.075, 0.88), (-0.075, 0.88)]  # of the front, less the round edges
@@ -68,18 +68,10 @@ def make():
     face, parts = Face(sculpt.chart(wedge, (0, 0.53, 0.5), (1, 0, 0), (0, 1, 0))), []
     for side in (-1, 1):
         parts += face.eye(0.098 * side, 0.095, 0.088, 0.118, 0.034, -0.08 * side, look=(-0.12 * side, -0.05))
-        t = np.linspace(-1, 1, 25)
-        parts.append(("brow", *face.tube((0.105 + 0.068 * t) * side, 0.245 + 0.016 * (1 - t**2) - 0.030 * t,
-                                         0.0155 * np.sqrt(np.maximum(1 - t**4, 0)))))
+        parts.append(("brow", *face.brow(side, 0.105, 0.068, lambda t: 0.245 + 0.016 * (1 - t**2) - 0.030 * t, 0.0155)))
 
-    def mouth(rho, psi):
-        x, y = 0.105 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.135 + y * np.where(y > 0, 0.022, 0.105) + 0.030 * (x / 0.105)**2
-
-    def teeth(rho, psi):
-        x, y = 0.062 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.133 + y * np.where(y > 0, 0.012, 0.030) + 0.030 * (x / 0.105)**2
-
+    mouth = lips(0.105, -0.135, 0.022, 0.105, 0.030, 0.105)
+    teeth = lips(0.062, -0.133, 0.012, 0.030, 0.030, 0.105)
     parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
     parts.append(("tongue", *face.dome(ellipse(0, -0.200, 0.050, 0.028), 0.0085, None, 3.0, 0.001, 8, 40)))
     parts.append(("teeth", *face.dome(teeth, 0.009, None, 6.0, 0.001, 8, 40)))

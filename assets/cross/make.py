@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import character
 import generator
 import sculpt
-from face import Face, ellipse
+from face import ellipse, Face, lips
 
 CELL = 0.0155  # m
 LENGTH, RADIUS = 0.60, 0.100  # of an arm, from the middle to its ball
@@ -60,15 +60,10 @@ def make():
     parts = []
     for side in (-1, 1):
         parts += face.eye(0.060 * side, 0.030, 0.049, 0.066, 0.020, -0.08 * side, look=(-0.12 * side, -0.02), around=40)
-        t = np.linspace(-1, 1, 25)
-        parts.append(("brow", *face.tube((0.060 + 0.034 * t) * side, 0.111 + 0.008 * (1 - t**2),
-                                         0.0085 * np.sqrt(np.maximum(1 - t**4, 0)))))
+        parts.append(("brow", *face.brow(side, 0.060, 0.034, lambda t: 0.111 + 0.008 * (1 - t**2), 0.0085)))
         parts.append(("blush", *face.dome(ellipse(0.113 * side, -0.040, 0.024, 0.017), 0.0018, None, 6.0, 0.002, 8, 32)))
 
-    def mouth(rho, psi):
-        x, y = 0.056 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.066 + y * np.where(y > 0, 0.010, 0.050) + 0.016 * (x / 0.056)**2
-
+    mouth = lips(0.056, -0.066, 0.010, 0.050, 0.016, 0.056)
     parts.append(("mouth", *face.dome(mouth, 0.002, None, 10.0, 0.003, 12, 56)))
     parts.append(("tongue", *face.dome(ellipse(0, -0.097, 0.026, 0.014), 0.006, None, 3.0, 0.001, 8, 32)))
     return {"cross.glb": character.glb("cross", "assets/cross/make.py", body, parts, LOOKS)}

@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import character
 import generator
 import sculpt
-from face import Face, ellipse
+from face import ellipse, Face, lips
 
 CELL = 0.0128  # m
 HALF = 0.15  # half thickness of the slice
@@ -88,19 +88,12 @@ def make():
     face, parts = Face(sculpt.chart(bread, (0, 0.53, 0.5), (1, 0, 0), (0, 1, 0))), []
     for side in (-1, 1):
         parts += face.eye(0.108 * side, 0.065, 0.082, 0.102, 0.034, -0.06 * side, look=(-0.10 * side, 0.0))
-        t = np.linspace(-1, 1, 25)
-        parts.append(("brow", *face.tube((0.112 + 0.070 * t) * side, 0.172 + 0.014 * t - 0.006 * t**2,
-                                         0.017 * np.sqrt(np.maximum(1 - t**4, 0)), lift=0.012)))
+        parts.append(("brow", *face.brow(side, 0.112, 0.070, lambda t: 0.172 + 0.014 * t - 0.006 * t**2, 0.017,
+                                         lift=0.012)))
         parts.append(("blush", *face.dome(ellipse(0.195 * side, -0.065, 0.045, 0.030), 0.0022, None, 6.0, 0.003, 8)))
 
-    def mouth(rho, psi):
-        x, y = 0.095 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.115 + y * np.where(y > 0, 0.016, 0.070) + 0.035 * (x / 0.095)**2 + 0.12 * x
-
-    def teeth(rho, psi):
-        x, y = 0.070 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.114 + y * np.where(y > 0, 0.008, 0.026) + 0.035 * (x / 0.095)**2 + 0.12 * x
-
+    mouth = lips(0.095, -0.115, 0.016, 0.070, 0.035, 0.095, 0.12)
+    teeth = lips(0.070, -0.114, 0.008, 0.026, 0.035, 0.095, 0.12)
     parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
     parts.append(("teeth", *face.dome(teeth, 0.008, None, 8.0, 0.001, 8, 40)))
     return {"crusty.glb": character.glb("crusty", "assets/crusty/make.py", body, parts, LOOKS)}

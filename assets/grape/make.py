@@ -39,9 +39,8 @@ def make():
     for side in (-1, 1):
         parts += face.eye(0.041 * side, 0.020, 0.031, 0.036, 0.013, 0.0, look=(-0.18 * side, -0.12), pupil=0.56,
                           lid=(0.30, 0.55 * side), around=30)
-        t = np.linspace(-1, 1, 17)
-        parts.append(("brow", *face.tube((0.043 + 0.032 * t) * side, 0.052 + 0.015 * t + 0.003 * t**2,
-                                         0.0072 * np.sqrt(np.maximum(1 - t**4, 0)), lift=0.009, around=10)))
+        parts.append(("brow", *face.brow(side, 0.043, 0.032, lambda t: 0.052 + 0.015 * t + 0.003 * t**2, 0.0072, 17,
+                                         lift=0.009, around=10)))
 
     def mouth(rho, psi):
         x, y = rho * np.cos(psi), rho * np.sin(psi)

@@ -11,7 +11,7 @@ import character
 import generator
 import lattice
 import sculpt
-from face import Face, ellipse
+from face import ellipse, Face, lips
 
 RADIUS = 0.5  # m
 CELLS = 44  # along each side of the six patches
@@ -50,14 +50,9 @@ def make():
     for side in (-1, 1):
         parts += face.eye(0.090 * side, 0.085, 0.070, 0.095, 0.026, -0.08 * side, look=(-0.10 * side, 0.0))
         parts.append(("blush", *face.dome(ellipse(0.165 * side, -0.045, 0.040, 0.027), 0.0022, None, 6.0, 0.003, 8)))
-        t = np.linspace(-1, 1, 25)
-        parts.append(("brow", *face.tube((0.092 + 0.052 * t) * side, 0.212 + 0.018 * (1 - t**2) - 0.006 * t,
-                                         0.012 * np.sqrt(np.maximum(1 - t**4, 0)))))
+        parts.append(("brow", *face.brow(side, 0.092, 0.052, lambda t: 0.212 + 0.018 * (1 - t**2) - 0.006 * t, 0.012)))
 
-    def mouth(rho, psi):
-        x, y = 0.085 * rho * np.cos(psi), rho * np.sin(psi)
-        return x, -0.090 + y * np.where(y > 0, 0.014, 0.085) + 0.032 * (x / 0.085)**2
-
+    mouth = lips(0.085, -0.090, 0.014, 0.085, 0.032, 0.085)
     parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
     parts.append(("tongue", *face.dome(ellipse(0, -0.142, 0.042, 0.024), 0.0085, None, 3.0, 0.001, 8, 40)))
     return {"sphere.glb": character.glb("sphere", "assets/sphere/make.py", body, parts, LOOKS)}

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "common/registry.h"
-#include "common/text.h"
 #include "sim/handles.h"
 
 namespace vivify::sim {

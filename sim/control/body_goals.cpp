@@ -36,6 +36,10 @@ double yaw_of(const Eigen::Matrix3d& R) {
   return std::atan2(front.x(), front.z());
 }
 
+double rest_rise(const ControlledBody& body) {
+  return centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension());
+}
+
 bool stands(const ControlledBody& body, double load) {
   return load > kTouchLoad * body.mass.sum() * body.gravity;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/control/body_goals.h"
+
 namespace vivify::sim {
 namespace {
 
@@ -23,7 +25,7 @@ class BlendController final : public Controller {
     const Key& from = *(next - 1);
     if (next == keys_.end()) return from.weights;
     double share = (t - from.t) / (next->t - from.t);
-    if (smooth_) share = share * share * (3 - 2 * share);
+    if (smooth_) share = smooth_step(share);
     return (1 - share) * from.weights + share * next->weights;
   }
 

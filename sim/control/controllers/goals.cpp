@@ -146,12 +146,8 @@ std::unique_ptr<Controller> make_goals_controller(const ControlledBody& body, co
     }
     goal.along.normalize();
     const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), body.dimension());
-    const Value& region = item["region"];
-    const Region part = {"goals[" + std::to_string(goals.size() - 1) + "]",
-                         region["min"].as_vector3(),
-                         region["max"].as_vector3(),
-                         {},
-                         item.where()};
+    const Region part =
+        region_between(item["region"], "goals[" + std::to_string(goals.size() - 1) + "]", item.where());
     if (goal.of == "region") goal.vertices = held_vertices(std::span(&part, 1), V).front();
     goal.from_centre = item["from_centre"].as_bool();
     goal.weight = item["weight"].as_number();

@@ -48,7 +48,7 @@ class HopController final : public Controller {
         flight_s_(2 * take_off_ / body.gravity) {
     // The body travels in flight, and with half the speed while it pushes off.
     stride_ = settings["pace"].as_number() * (crouch_s_ + 0.5 * thrust_s_ + flight_s_ + land_s_);
-    rest_rise_ = centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension());
+    rest_rise_ = rest_rise(body);
     time_ = land_s_;
   }
 

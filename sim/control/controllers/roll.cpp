@@ -28,7 +28,7 @@ class RollController final : public Controller {
         speed_(settings["speed"].as_number()),
         ramp_s_(settings["ramp_s"].as_number()),
         weight_(settings["effort"].as_number()),
-        rest_rise_(centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension())) {}
+        rest_rise_(rest_rise(body)) {}
 
   std::vector<Goal> goals(const Observation& now) override {
     rolling_ = stands(body_, now.load);

@@ -16,9 +16,7 @@ constexpr double kUprightWeight = 10;    // of the goals that turn the body upri
 class WaitController final : public Controller {
  public:
   WaitController(const ControlledBody& body, const Value& settings)
-      : body_(body),
-        effort_(settings["effort"].as_number()),
-        rest_rise_(centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension())) {}
+      : body_(body), effort_(settings["effort"].as_number()), rest_rise_(rest_rise(body)) {}
 
   std::vector<Goal> goals(const Observation& now) override {
     standing_ = stands(body_, now.load);

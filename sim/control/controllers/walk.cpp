@@ -70,14 +70,10 @@ class WalkController final : public Controller {
         speed_(std::sqrt(body.gravity * body.height)) {
     const Eigen::Vector3d centre = centre_of_mass(body.mass, body.rest);
     const int d = body.dimension();
-    rest_rise_ = centre.y() - lowest_height(body.rest, d);
+    rest_rise_ = rest_rise(body);
     std::vector<Region> regions;
     for (const Value& foot : settings["feet"].items()) {
-      regions.push_back({"feet[" + std::to_string(regions.size()) + "]",
-                         foot["min"].as_vector3(),
-                         foot["max"].as_vector3(),
-                         {},
-                         foot.where()});
+      regions.push_back(region_between(foot, "feet[" + std::to_string(regions.size()) + "]", foot.where()));
     }
     const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), d);
     for (std::vector<int>& vertices : held_vertices(regions, V)) {
