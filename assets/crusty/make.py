@@ -1,5 +1,6 @@
 """Crusty, a slice of toast of 1 m on two short legs, with a headband and running shoes. It looks to +z and stands on y = 0,
-its feet at x = -0.2 and 0.2 m. `python3 make.py` writes crusty.glb beside this file; `--check` compares instead."""
+its feet at x = -0.2 and 0.2 m. `python3 make.py` writes crusty.glb beside this file, and the example poses of
+configs/crusty_race.yaml; `--check` compares instead."""
 
 import pathlib
 import sys
@@ -75,6 +76,37 @@ def shape(p):
     return sculpt.union(sculpt.union(sculpt.minus(bread(p), dents(p), 0.012), band(p), 0.008), legs, 0.06)
 
 
+# Poses: low ones are wound up about the vertical, high ones the other way, so that the jump from low to high unwinds.
+RISE, TWIST = 0.15, 42  # of what is above the legs: m, degrees
+LEAN, LIFT, STEP = 0.30, 0.06, 0.12  # m: to the front or back; of one foot over the other, above and before it
+
+
+def pose(about, rise, twist, lean=0.0, lift=0.0, step=0.0):
+    """A pose file: the left foot is raised and put forward, the right one lowered and put back; the top is moved and turned."""
+    foot = f"move: [0, {0.5 * lift:.3g}, {step:.3g}]" if lift or step else "pin: true"
+    other = f"move: [0, {0 - 0.5 * lift:.3g}, {0 - step:.3g}]" if lift or step else "pin: true"
+    return f"""# Crusty, {about}.
+version: 1
+handles:
+  - {{region: {{min: [0.5, 0, 0], max: [1, 0.15, 1]}}, {foot}}}
+  - {{region: {{min: [0, 0, 0], max: [0.5, 0.15, 1]}}, {other}}}
+  - {{region: {{min: [0, 0.65, 0], max: [1, 1, 1]}}, move: [0, {rise:.3g}, {lean:.3g}], rotate_deg: {twist}}}
+""".encode()
+
+
+def poses():
+    files = {}
+    for name, about, side in (("low", "crouched and wound up", 1), ("high", "stretched and unwound", -1)):
+        base = {"rise": -side * RISE, "twist": side * TWIST}
+        files[f"{name}.yaml"] = pose(about, **base)
+        files[f"{name}_forward.yaml"] = pose(f"{about}, to the front", **base, lean=LEAN)
+        files[f"{name}_back.yaml"] = pose(f"{about}, to the back", **base, lean=-LEAN)
+        files[f"{name}_left.yaml"] = pose(f"{about}, to the left", **base, lift=LIFT)
+        files[f"{name}_right.yaml"] = pose(f"{about}, to the right", **base, lift=-LIFT)
+        files[f"{name}_step.yaml"] = pose(f"{about}, in a step", **base, step=side * STEP)
+    return files
+
+
 def make():
     vertices, triangles = sculpt.surface(shape, (-0.46, -0.05, -0.30), (0.46, 1.06, 0.34), CELL)
     names = np.full(len(triangles), "crust", dtype=object)
@@ -96,8 +128,8 @@ def make():
     teeth = lips(0.070, -0.114, 0.008, 0.026, 0.035, 0.095, 0.12)
     parts.append(("mouth", *face.dome(mouth, 0.003, None, 10.0, 0.003, 12, 64)))
     parts.append(("teeth", *face.dome(teeth, 0.008, None, 8.0, 0.001, 8, 40)))
-    return {"crusty.glb": character.glb("crusty", "assets/crusty/make.py", body, parts, LOOKS)}
+    return {"crusty.glb": character.glb("crusty", "assets/crusty/make.py", body, parts, LOOKS), **poses()}
 
 
 if __name__ == "__main__":
-    generator.main(make, __file__, "Makes crusty.glb.")
+    generator.main(make, __file__, "Makes crusty.glb and its poses.")

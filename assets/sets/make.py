@@ -4,6 +4,9 @@ ramp.glb    a floor of `planks`, 8 m wide, its top in y = 0 up to z = 0; then it
             a `line` is painted across it before the rise and after it
 dunes.glb   sand, 3 m wide, level to x = 0.5, then uneven for 15 m: what varies is its height along x
 board.glb   a chopping board with a handle, 2.4 m by 0.9 m and 0.07 m high, lying on y = 0; the handle points to +x
+track.glb   a running track with two lanes along z on a `lawn`, its top in y = 0: `paint` beside the lanes and where the race
+            begins, at z = -2.1, and squares (`dark`, `paint`) across z = 0, where it ends
+gate.glb    two `post`s and a banner of squares (`dark`, `paint`) over the end of the race
 """
 
 import pathlib
@@ -91,11 +94,61 @@ def board_shape(p):
     return sculpt.minus(solid, groove, 0.006)
 
 
-COLORS = {"planks": (0.45, 0.25, 0.12), "line": (0.70, 0.10, 0.05), "sand": (0.70, 0.50, 0.28), "board": (0.60, 0.36, 0.16)}
+CHECK = 0.15  # size of the squares of the race (m)
 
 
-def glb(name, vertices, triangles, names, genus=0, **more):
-    volume = verify(vertices, triangles, genus)
+def dark(a, b):
+    return (np.floor(a / CHECK) + np.floor(b / CHECK)) % 2 == 0
+
+
+def track():
+    lanes, start = (-1.2, 0.0, 1.2), -2.1
+    near = lambda v, values, distance: np.min(np.abs(v[:, None] - values), axis=1) < distance
+    edges = np.concatenate([np.add.outer(lanes, (-0.025, 0.025)).ravel(), CHECK * np.arange(-8, 9), (-1.6, 1.6)])
+    line, _ = section(9.0, 0.4, 0.10)
+    line = np.concatenate([line[:9], [(x, 0) for x in np.unique(edges.round(3))[::-1]], line[-9:]])
+    z = np.concatenate([np.linspace(-12, -3, 7), (start - 0.025, start + 0.025), (-1.1, -CHECK, 0, CHECK), np.linspace(1, 9, 6)])
+    vertices, triangles = sweep(line, np.stack([z, np.zeros(len(z))], axis=1))
+    x, y, z = vertices[triangles].mean(axis=1).T
+    names = np.where((np.abs(x) < 1.6) & (y > -1e-6), "track", "lawn").astype(object)
+    names[(names == "track") & (near(x, lanes, 0.025) | (np.abs(x) < 1.2) & near(z, (start,), 0.025))] = "paint"
+    names[(np.abs(x) < 1.2) & (y > -1e-6) & (np.abs(z) < CHECK)] = "paint"
+    names[(np.abs(x) < 1.2) & (y > -1e-6) & (np.abs(z) < CHECK) & dark(x, z)] = "dark"
+    return vertices, triangles, names
+
+
+def gate():
+    """Closed surfaces: the posts and the banner, with the names of their triangles."""
+    turn = np.linspace(0, 2 * np.pi, 33)[:-1]
+    vertices, triangles = sweep(0.05 * np.stack([np.cos(turn), np.sin(turn)], axis=1), np.array([(0, 0), (0, 1.0), (0, 2.0)]))
+    solids = [(vertices + (x, 0, 0), triangles, np.full(len(triangles), "post")) for x in (-1.4, 1.4)]
+    rows = CHECK * np.arange(10, 13)
+    outline = np.array([(0.012, rows[1]), (0.012, rows[2]), (-0.012, rows[2]), (-0.012, rows[1]), (-0.012, rows[0]),
+                        (0.012, rows[0])])
+    columns = CHECK * np.arange(-9, 10)
+    vertices, triangles = sweep(outline, np.stack([columns, np.zeros(len(columns))], axis=1))
+    vertices = vertices[:, [2, 1, 0]] * (1, 1, -1)
+    x, y, _ = vertices[triangles].mean(axis=1).T
+    return solids + [(vertices, triangles, np.where(dark(x, y), "dark", "paint"))]
+
+
+COLORS = {"planks": (0.45, 0.25, 0.12), "paint": (0.70, 0.10, 0.05), "sand": (0.70, 0.50, 0.28), "board": (0.60, 0.36, 0.16),
+          "lawn": (0.10, 0.22, 0.05), "track": (0.05, 0.17, 0.30), "dark": (0.015, 0.015, 0.018), "paint": (0.80, 0.79, 0.76),
+          "post": (0.75, 0.73, 0.68)}
+
+
+def joined(solids):
+    """Several closed surfaces as one."""
+    starts = np.cumsum([0] + [len(vertices) for vertices, _, _ in solids])
+    return (np.concatenate([vertices for vertices, _, _ in solids]),
+            np.concatenate([triangles + start for (_, triangles, _), start in zip(solids, starts)]),
+            np.concatenate([names for _, _, names in solids]))
+
+
+def glb(name, *solids, genus=0, **more):
+    """Bytes of closed surfaces, each (vertices, triangles, part of each triangle) and of this genus."""
+    volume = sum(verify(vertices, triangles, genus) for vertices, triangles, _ in solids)
+    vertices, triangles, names = joined(solids)
     low, high = vertices.min(axis=0).round(3), vertices.max(axis=0).round(3)
     print(f"{name}: {len(triangles)} triangles, closed, from {low} to {high} m, volume {volume:.3f} m3")
     parts = [{"name": part, "positions": vertices, "triangles": triangles[names == part], "color": COLORS[part],
@@ -108,9 +161,11 @@ def make():
     sand, board = dunes(), sculpt.surface(board_shape, (-1.3, -0.02, -0.5), (1.5, 0.1, 0.5), 0.022)
     grain = board[0][:, [0, 2]] / PLANKS + (0.31, 0.25)
     return {
-        "ramp.glb": glb("ramp", *floor, uv=uv),
-        "dunes.glb": glb("dunes", *sand, np.full(len(sand[1]), "sand")),
-        "board.glb": glb("board", *board, np.full(len(board[1]), "board"), genus=1, uv=grain),
+        "ramp.glb": glb("ramp", floor, uv=uv),
+        "dunes.glb": glb("dunes", (*sand, np.full(len(sand[1]), "sand"))),
+        "board.glb": glb("board", (*board, np.full(len(board[1]), "board")), genus=1, uv=grain),
+        "track.glb": glb("track", track()),
+        "gate.glb": glb("gate", *gate()),
     }
 
 

@@ -43,6 +43,7 @@ class HopController final : public Controller {
         land_s_(settings["land_s"].as_number()),
         upright_(settings["upright"].as_number()),
         turn_(settings["turn_deg"].as_number() * std::numbers::pi / 180),
+        sway_(settings["sway_deg"].as_number() * std::numbers::pi / 180),
         face_heading_(settings["face_heading"].as_bool()),
         take_off_(std::sqrt(2 * body.gravity * settings["height"].as_number())),
         flight_s_(2 * take_off_ / body.gravity) {
@@ -67,7 +68,7 @@ class HopController final : public Controller {
     if (!standing && phase_ != kThrust) return {};  // in the air no internal force moves the centre of mass
 
     BodyGoals goals(body_, now.x);
-    Eigen::Vector3d rate = upright_rate(R, kUprightFrequency);
+    Eigen::Vector3d rate = kUprightFrequency * (R * up()).cross(head());
     if (!planar()) rate.y() = yaw_rate(R);
     switch (phase_) {
       case kCrouch: {
@@ -79,6 +80,7 @@ class HopController final : public Controller {
       case kThrust: {
         const double ramp = smooth_step(time_ / (0.5 * thrust_s_));
         if (turn_ != 0 && !planar()) rate.y() = ramp * turn_ / flight_s_;
+        if (sway_ != 0) rate += (ramp * roll_rate(R) - rate.dot(way_.forward)) * way_.forward;
         add_centre(goals, 1, 0, 0, ramp * (wanted_take_off() + asked_on_top()));
         goals.spin(upright_, rate);
         break;
@@ -126,6 +128,15 @@ class HopController final : public Controller {
   bool planar() const { return body_.dimension() == 2; }
   static Eigen::Vector3d up() { return Eigen::Vector3d::UnitY(); }
   Eigen::Vector3d sideways() const { return up().cross(way_.forward); }
+
+  // Angle from the vertical to the left: to one side and the other, from hop to hop.
+  double lean() const { return arrived_ ? 0 : hops_ % 2 == 0 ? sway_ : -sway_; }
+  // Where the head of the body shall be, from its centre.
+  Eigen::Vector3d head() const { return (up() + std::tan(lean()) * sideways()).normalized(); }
+  // Turning rate about the line of travel with which a flight leads over to the other side.
+  double roll_rate(const Eigen::Matrix3d& R) const {
+    return (lean() + std::asin(std::clamp((R * up()).dot(sideways()), -1.0, 1.0))) / flight_s_;
+  }
 
   // Velocity of the centre of mass over the ground at take-off: the asked height and pace, in equal hops to
   // where the way ends, and back to the line of travel.
@@ -237,7 +248,7 @@ class HopController final : public Controller {
   ControlledBody body_;
   Course course_;
   long count_;
-  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_, turn_;
+  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_, turn_, sway_;
   bool face_heading_;
   double take_off_, flight_s_;
   double stride_ = 0;     // length of a hop, m
@@ -271,6 +282,9 @@ Schema hop_controller_schema() {
              boolean("Turn the front of the character (+z at rest) towards the heading.").initially(false))
       .field("turn_deg",
              number("Turn about the vertical during each hop, to the left.").unit("°").initially(0))
+      .field(
+          "sway_deg",
+          number("How far the body leans to one side and the other, from hop to hop.").unit("°").initially(0))
       .field("crouch_depth", number("Depth of the crouch as a share of the body's height.")
                                  .at_least(0)
                                  .at_most(0.5)
