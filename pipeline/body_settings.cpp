@@ -9,6 +9,7 @@
 #include "meshing/tetrahedralize.h"
 #include "pipeline/handle_settings.h"
 #include "pipeline/placement.h"
+#include "pipeline/push_settings.h"
 #include "sim/control/behavior.h"
 #include "sim/control/controller.h"
 #include "sim/elastic/models.h"
@@ -112,6 +113,7 @@ class BodyCheck {
     if (is_planar(kind_)) plane();
     rest_space();
     check_handles(body_, where_, is_planar(kind_), errors_);
+    check_pushes(body_, where_, is_planar(kind_), errors_);
     if (!body_["behavior"].items().empty() && body_["controller"]["type"].as_string() != "rest") {
       fail(body_["controller"], where_ + ".controller and .behavior both say what the body does",
            "move the controller into the list `behavior`, or remove one of them");
@@ -238,6 +240,7 @@ Schema body_schema() {
                  .at_least(0)
                  .initially(0.0))
       .field("handles", list("What holds parts of the body, as pins or along keyframes.", handle_schema()))
+      .field("pushes", list("What pushes the body from outside, and when.", push_schema()))
       .field("controller", sim::controller_schema())
       .field("behavior", sim::behavior_schema())
       .field("solver", sim::solver_schema());

@@ -184,15 +184,15 @@ class SemanticCheck {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const std::string where = "bodies[" + std::to_string(i) + "]";
       check_body(bodies[i], where, errors_);
-      if (!bodies[i]["handles"].items().empty() && scene_.settings["physics"].as_string() == "static") {
-        fail(bodies[i]["handles"],
-             where + ".handles does not fit: physics = static has no forces from outside",
+      for (const char* outside : {"handles", "pushes"}) {
+        const Value& forces = bodies[i][outside];
+        if (forces.items().empty() || scene_.settings["physics"].as_string() != "static") continue;
+        fail(forces, where + "." + outside + " does not fit: physics = static has no forces from outside",
              "make the physics dynamic, or give poses");
       }
       for (const auto& [part, settings] : behaviors_of(bodies[i])) {
         sim::check_course(settings, where + "." + part, is_planar(body_kind(bodies[i])), errors_);
-        for (const Value& other : sim::looked_at(settings))
-          body_exists(other, where + "." + part);
+        for (const Value& other : sim::looked_at(settings)) body_exists(other, where + "." + part);
       }
       for (const Value& example : examples_of(bodies[i])) {
         const std::filesystem::path pose =

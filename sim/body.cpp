@@ -164,7 +164,10 @@ void BodyModel::bind(const SymmetricPattern& shared, int first_vertex) {
 }
 
 Body::Body(const BodyInput& input, const WorldSettings& settings)
-    : settings_(settings), model_(make_body_model(input, settings)), rest_(flatten(model_.mesh.V)) {
+    : settings_(settings),
+      model_(make_body_model(input, settings)),
+      rest_(flatten(model_.mesh.V)),
+      pushes_(input.pushes) {
   state_ = {rest_, Eigen::VectorXd::Zero(rest_.size()), Eigen::VectorXd::Zero(model_.rest->free_parameters()),
             std::vector<ContactMemory>(static_cast<std::size_t>(model_.contact_points.size()))};
   surface_ = std::make_unique<SurfaceState>(model_.surface);
@@ -212,7 +215,7 @@ bool Body::settle(const Eigen::VectorXd& q, StepRecord& record) {
     const Eigen::Vector3d y = to + R * (spatial_point(solution.x, i, d) - from);
     for (int k = 0; k < d; ++k) state_.x[d * i + k] = y[k];
   }
-  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * (q - state_.q)).norm() / settings_.h);
+  measure_rest_motion(q, settings_.h, record);
   state_.q = q;
   const ContactSet no_contacts;
   const Goals no_goals;
@@ -286,6 +289,14 @@ void Body::finish_record(long step, const std::vector<Collider>& colliders, Step
   record.tilt_deg = std::acos(std::clamp(R(1, 1), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
+void Body::measure_rest_motion(const Eigen::VectorXd& q, double h, StepRecord& record) const {
+  const Eigen::VectorXd dq = q - state_.q, motion = model_.rest->motion(dq);
+  record.p_rate = std::max(record.p_rate, (model_.rest->basis() * dq).norm() / h);
+  if (motion.size() == 0) return;
+  const double points = static_cast<double>(motion.size()) / model_.dimension();
+  record.rest_rate = std::max(record.rest_rate, motion.norm() / std::sqrt(points) / model_.height / h);
+}
+
 void Body::measure(const StepProblem& problem, std::size_t b, const DeformedPoint& at, const RestPoint& rest,
                    StepRecord& record) const {
   const int d = model_.dimension();
@@ -305,6 +316,8 @@ void Body::measure(const StepProblem& problem, std::size_t b, const DeformedPoin
   record.handle_force = problem.handle_force(b, at);
   record.elastic = problem.elastic_energy(b, at, rest);
   record.min_element_ratio = problem.smallest_element(b, at);
+  record.min_rest_element_ratio = problem.smallest_rest_element(b, rest);
+  record.rest_volume_ratio = problem.rest_volume(b, rest);
 }
 
 void Body::save(Hdf5Writer& file, const std::string& group) const {

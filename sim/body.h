@@ -12,6 +12,7 @@
 #include "sim/contact/surface_pairs.h"
 #include "sim/control/controller.h"
 #include "sim/handles.h"
+#include "sim/push.h"
 #include "sim/solve/step_problem.h"
 #include "sim/step_record.h"
 
@@ -34,6 +35,7 @@ struct BodyInput {
   FrictionByName friction_with = {};
   Location where = {};  // of its position in the scene file, for messages
   std::vector<Handle> handles = {};
+  std::vector<Push> pushes = {};
   double spawn = 0;  // when it appears in the world, s
 };
 
@@ -71,6 +73,10 @@ class Body {
   const Controller& controller() const { return *controller_; }
   const SurfaceState& surface() const { return *surface_; }
   const Handles& handles() const { return handles_; }
+  // What its pushes add to its velocity between two times, m/s.
+  Eigen::Vector3d pushed(double from, double to) const {
+    return impulse_between(pushes_, from, to) / model_.mass.sum();
+  }
   long spawn_step() const { return spawn_step_; }        // steps of the world before it appears
   double wall_seconds() const { return wall_seconds_; }  // of its steps in this process
   void add_wall_seconds(double seconds) { wall_seconds_ += seconds; }
@@ -100,6 +106,8 @@ class Body {
   // empty when no element was.
   void note_failure(Eigen::VectorXd x) { stuck_ = std::move(x); }
   std::string squeezed_element() const;
+  // Writes down how fast the rest shape gets from its present parameters to q in a time of h.
+  void measure_rest_motion(const Eigen::VectorXd& q, double h, StepRecord& record) const;
   // Writes down the motion and the elastic state at the end of a step of the problem's body `b`.
   void measure(const StepProblem& problem, std::size_t b, const DeformedPoint& at, const RestPoint& rest,
                StepRecord& record) const;
@@ -117,6 +125,7 @@ class Body {
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<SurfaceState> surface_;
   Handles handles_;
+  std::vector<Push> pushes_;
   State state_;
   long spawn_step_;
   std::vector<Goal> goals_;                   // of the last step

@@ -325,8 +325,9 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     starts[m] = state.x + h * state.v;
     holds[m] = members_[m].body->handles().at(end, h);
     steps[m] = {&model, &contacts[m], state.x, starts[m], state.q, {}, &holds[m]};
+    const Eigen::Vector3d push = members_[m].body->pushed(end - h, end);
     for (Eigen::Index i = 0; i < model.mass.size(); ++i)
-      steps[m].x_tilde.segment(d * i, d) += h * h * settings_.gravity.head(d);
+      steps[m].x_tilde.segment(d * i, d) += h * h * settings_.gravity.head(d) + h * push.head(d);
     if (wishes[m].q) {
       const bool same = *wishes[m].q == before[m].q;
       steps[m].q = same ? before[m].q : Eigen::VectorXd((1 - share) * before[m].q + share * *wishes[m].q);
@@ -388,8 +389,7 @@ bool Island::advance(double end, double h, double share, const std::vector<Body:
     Body& body = *members_[m].body;
     Body::State& state = body.state();
     const Eigen::VectorXd q = problem->q_of(m, solution.rest.q);
-    const double rate = (body.model().rest->basis() * (q - state.q)).norm() / h;
-    records[m].p_rate = std::max(records[m].p_rate, rate);
+    body.measure_rest_motion(q, h, records[m]);
     records[m].objective = solution.objective;
     const Eigen::VectorXd x = problem->x_of(m, solution.at.x);
     state.v = (x - state.x) / h;
@@ -420,7 +420,7 @@ std::vector<StepRecord> Island::step(long step, const std::vector<Collider>& col
     const int parts = 1 << splits;
     if (records.empty()) records.resize(members_.size());
     for (StepRecord& record : records) {
-      record.residual_rel = record.p_rate = 0;
+      record.residual_rel = record.p_rate = record.rest_rate = 0;
       record.substeps = parts;
     }
     solved = true;

@@ -10,7 +10,8 @@ std::string csv_header() {
          "com_x_m,com_y_m,com_z_m,vel_x_m_s,vel_y_m_s,vel_z_m_s,internal_force_sum_n,internal_torque_sum_nm,"
          "contacts,"
          "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,guards,substeps,"
-         "handle_force_x_n,handle_force_y_n,handle_force_z_n,phase\n";
+         "handle_force_x_n,handle_force_y_n,handle_force_z_n,phase,rest_rate_per_s,min_rest_element_ratio,"
+         "rest_volume_ratio\n";
 }
 
 std::string csv_line(const StepRecord& r) {
@@ -30,7 +31,9 @@ std::string csv_line(const StepRecord& r) {
   }
   line += ',' + std::to_string(r.guards) + ',' + std::to_string(r.substeps);
   for (int axis = 0; axis < 3; ++axis) add(r.handle_force[axis]);
-  return line + ',' + r.phase + '\n';
+  line += ',' + r.phase;
+  for (const double value : {r.rest_rate, r.min_rest_element_ratio, r.rest_volume_ratio}) add(value);
+  return line + '\n';
 }
 
 }  // namespace vivify::sim

@@ -35,6 +35,12 @@ struct StepRecord {
   double elastic = 0;            // J
   double tilt_deg = 0;           // angle of the body's up vector to the vertical
   std::string phase;             // of the controller
+  // The rest shape. `rest_rate` is the root mean square of the velocities of its points over the height of
+  // the body, per second: ‖Ẋ‖ in heights/s, alike for all rest spaces (p_rate has the unit of p and grows
+  // with the number of parameters). 0 for strains, which have no shape.
+  double rest_rate = 0;
+  double min_rest_element_ratio = 1;  // smallest V/V̄ (of rods and shells: L/L̄)
+  double rest_volume_ratio = 1;       // ΣV/ΣV̄ (of rods ΣL/ΣL̄, of shells ΣL²/ΣL̄², which goes as the area)
 };
 
 std::string csv_header();                        // one line, with the newline

@@ -19,6 +19,7 @@
 #include "pipeline/frame_range.h"
 #include "pipeline/friction_settings.h"
 #include "pipeline/handle_settings.h"
+#include "pipeline/push_settings.h"
 #include "pipeline/run_report.h"
 #include "pipeline/stages/stages.h"
 #include "sim/contact/contact_points.h"
@@ -99,6 +100,7 @@ sim::World make_world(const Job& job) {
     bodies.push_back(simulated_body(job.out, characters[i]));
     bodies.back().spawn = characters[i]["spawn_s"].as_number();
     bodies.back().handles = make_handles(characters[i], "bodies[" + std::to_string(i) + "]");
+    bodies.back().pushes = make_pushes(characters[i]);
     bodies.back().friction_with = friction_of(scene.settings, bodies.back().name);
   }
   std::vector<sim::Collider> colliders;
@@ -162,6 +164,9 @@ double mean(const std::vector<double>& values) {
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
+double smallest(const std::vector<double>& values) {
+  return values.empty() ? 1 : *std::min_element(values.begin(), values.end());
+}
 // The smallest value that `share` of the values do not exceed.
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -200,7 +205,11 @@ std::string summarize(const Job& job, const std::string& csv) {
         {"sqp_iterations_p95", percentile(iterations, 0.95)},
         {"fallback_steps", std::count_if(fallback.begin(), fallback.end(), [](double f) { return f != 0; })},
         {"max_residual_rel", largest(steps.column("residual_rel", name))},
-        {"max_p_rate", largest(steps.column("p_rate", name))}};
+        {"max_p_rate", largest(steps.column("p_rate", name))},
+        {"max_rest_rate_per_s", largest(steps.column("rest_rate_per_s", name))},
+        {"min_rest_element_ratio", smallest(steps.column("min_rest_element_ratio", name))},
+        {"min_rest_volume_ratio", smallest(steps.column("rest_volume_ratio", name))},
+        {"max_rest_volume_ratio", largest(steps.column("rest_volume_ratio", name))}};
   }
   return summary.dump(2) + "\n";
 }
@@ -305,8 +314,8 @@ std::string simulation_key(const Job& job) {
       .add("friction", scene.settings["friction"]);
   for (const Value& body : scene.settings["bodies"].items()) {
     key.add("weights", weights_key(job, body));
-    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "behavior", "solver", "velocity",
-                             "handles", "spawn_s"}) {
+    for (const char* part : {"name", "model", "regularizer", "contact", "controller", "behavior", "solver",
+                             "velocity", "handles", "pushes", "spawn_s"}) {
       key.add(part, body[part]);
     }
   }

@@ -52,6 +52,8 @@ class RestSpace {
   // C += Σ w ∂²S/∂q² for weights per family.
   virtual void add_hessians(const ElasticFamilies& families, const Eigen::VectorXd& q,
                             const std::vector<Eigen::VectorXd>& weights, Eigen::MatrixXd& C) const = 0;
+  // How the stacked rest points move when q changes by dq, m; empty without a rest shape.
+  virtual Eigen::VectorXd motion(const Eigen::VectorXd&) const { return {}; }
 
  private:
   Eigen::MatrixXd basis_;
@@ -73,6 +75,7 @@ class ShapeSpace final : public RestSpace {
                 std::vector<RowMatrixXd>* J) const override;
   void add_hessians(const ElasticFamilies& families, const Eigen::VectorXd& q,
                     const std::vector<Eigen::VectorXd>& weights, Eigen::MatrixXd& C) const override;
+  Eigen::VectorXd motion(const Eigen::VectorXd& dq) const override { return Lq_ * dq; }
 
  private:
   Eigen::VectorXd X0_;

@@ -285,6 +285,25 @@ double StepProblem::smallest_element(std::size_t b, const DeformedPoint& at) con
   return smallest_ratio(b, at.s);
 }
 
+double StepProblem::smallest_rest_element(std::size_t b, const RestPoint& rest) const {
+  return smallest_ratio(b, rest.S);
+}
+
+double StepProblem::rest_volume(std::size_t b, const RestPoint& rest) const {
+  double by_size = NAN, by_length = NAN;
+  for (std::size_t f = terms_at_[b]; f < terms_at_[b + 1]; ++f) {
+    const MeasureFamily& family = *terms_[f].family;
+    const Eigen::VectorXd& S0 = body(b).S0[terms_[f].index];
+    if (family.kind() == MeasureKind::size) {
+      by_size = rest.S[f].sum() / S0.sum();
+    } else if (family.points_per_term() == 2) {
+      const bool rod = body(b).dimension() == 2;
+      by_length = rod ? rest.S[f].cwiseSqrt().sum() / S0.cwiseSqrt().sum() : rest.S[f].sum() / S0.sum();
+    }
+  }
+  return std::isnan(by_size) ? by_length : by_size;
+}
+
 double StepProblem::smallest_element(const DeformedPoint& at) const {
   double smallest = 1;
   for (std::size_t b = 0; b < bodies_.size(); ++b) smallest = std::min(smallest, smallest_element(b, at));

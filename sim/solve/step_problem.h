@@ -95,6 +95,10 @@ class StepProblem {
   // Smallest v_e / V̄_e of the deformed elements (of bodies without areas or volumes: l / L̄ of the edges).
   double smallest_element(const DeformedPoint& at) const;
   double smallest_element(std::size_t body, const DeformedPoint& at) const;
+  // The same of a body's rest elements, and the sum of their sizes over that of X₀ (rods: of lengths; shells:
+  // of squared lengths).
+  double smallest_rest_element(std::size_t body, const RestPoint& rest) const;
+  double rest_volume(std::size_t body, const RestPoint& rest) const;
 
   // E = ∂c/∂q is never formed: products with it, and with its transpose. `rest` needs derivatives.
   Eigen::MatrixXd multiply_E(const DeformedPoint& at, const RestPoint& rest, const Eigen::MatrixXd& dq) const;

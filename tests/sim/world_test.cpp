@@ -100,6 +100,34 @@ TEST_F(HopRun, HopsToTheHeadingAndStaysUpright) {
   }
 }
 
+// From the rest points themselves.
+TEST(RestShape, RecordsTellHowItChanges) {
+  for (const char* settings : {"{type: solid3d}", "{type: solid3d_stvk}"}) {
+    World world({box_input(small_box(), {.model = settings, .controller = "{type: hop, height: 0.2}"})},
+                one(plane(1)), {});
+    const Body& body = world.body(0);
+    const auto& space = dynamic_cast<const ShapeSpace&>(*body.model().rest);
+    const Vector sizes = element_sizes(body.model().mesh);
+    double slowest = INFINITY, fastest = 0;
+    for (int step = 0; step < 40; ++step) {
+      const Vector before = space.shape(body.state().q);
+      world.step();
+      const StepRecord& r = world.records().back();
+      SimMesh rest = body.model().mesh;
+      const Vector X = space.shape(body.state().q);
+      rest.V = Eigen::Map<const RowMatrixXd>(X.data(), rest.V.rows(), 3);
+      const Vector now = element_sizes(rest);
+      EXPECT_NEAR(r.rest_volume_ratio, now.sum() / sizes.sum(), 1e-12);
+      EXPECT_NEAR(r.min_rest_element_ratio, std::min(1.0, now.cwiseQuotient(sizes).minCoeff()), 1e-12);
+      const double rms = (X - before).norm() / std::sqrt(static_cast<double>(rest.V.rows()));
+      if (r.substeps == 1) EXPECT_NEAR(r.rest_rate, rms / body.model().height * 48, 1e-9);
+      slowest = std::min(slowest, r.rest_rate);
+      fastest = std::max(fastest, r.rest_rate);
+    }
+    EXPECT_GT(fastest, 10 * slowest) << "it thrusts";
+  }
+}
+
 TEST_F(HopRun, RecordsDescribeTheState) {
   const Body& body = world->body(0);
   const StepRecord& last = records().back();
