@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
-#include <sstream>
 
 #include "common/error.h"
 #include "common/hdf5_file.h"
 #include "common/log.h"
 #include "common/stop.h"
 #include "meshing/skin.h"
+#include "pipeline/arrival.h"
 #include "pipeline/body_settings.h"
 #include "pipeline/collider_settings.h"
 #include "pipeline/content_key.h"
@@ -22,6 +22,7 @@
 #include "pipeline/push_settings.h"
 #include "pipeline/run_report.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/step_table.h"
 #include "sim/contact/contact_points.h"
 #include "sim/step_record.h"
 #include "sim/world.h"
@@ -123,39 +124,6 @@ void remove_stale_frames(const Job& job, Ledger& ledger, const std::string& key)
   }
 }
 
-// Values of one column of steps.csv, per body.
-class StepTable {
- public:
-  explicit StepTable(const std::string& csv) {
-    std::istringstream lines(csv);
-    std::string line;
-    std::getline(lines, line);
-    columns_ = split(line);
-    while (std::getline(lines, line)) rows_.push_back(split(line));
-  }
-  std::vector<double> column(const std::string& name, const std::string& body) const {
-    std::vector<double> values;
-    const std::size_t value = index(name), owner = index("body");
-    for (const std::vector<std::string>& row : rows_) {
-      if (row.at(owner) == body) values.push_back(std::stod(row.at(value)));
-    }
-    return values;
-  }
-
- private:
-  static std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    return cells;
-  }
-  std::size_t index(const std::string& name) const {
-    return static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), name) - columns_.begin());
-  }
-  std::vector<std::string> columns_;
-  std::vector<std::vector<std::string>> rows_;
-};
-
 double mean(const std::vector<double>& values) {
   return values.empty()
              ? 0
@@ -210,6 +178,17 @@ std::string summarize(const Job& job, const std::string& csv) {
         {"min_rest_element_ratio", smallest(steps.column("min_rest_element_ratio", name))},
         {"min_rest_volume_ratio", smallest(steps.column("rest_volume_ratio", name))},
         {"max_rest_volume_ratio", largest(steps.column("rest_volume_ratio", name))}};
+    if (const std::optional<Eigen::Vector3d> place = destination(body)) {
+      const RowMatrixXd rest = Hdf5Reader(job.out / mesh_file(body)).matrix("/X0");
+      const double gravity = job.scene.settings["gravity"].as_vector3().norm();
+      const Arrival arrival =
+          judge_arrival(body, *place, steps, gravity, rest, last.matrix("/bodies/" + name + "/x"));
+      summary["bodies"][name]["arrival"] = {{"place", {place->x(), place->y(), place->z()}},
+                                            {"arrived", arrival.arrived},
+                                            {"missing_m", arrival.missing},
+                                            {"reasons", arrival.reasons}};
+      if (!arrival.arrived) log_warning(describe(name, arrival));
+    }
   }
   return summary.dump(2) + "\n";
 }

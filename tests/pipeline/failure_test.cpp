@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/file.h"
+#include "tests/common/temporary_folder.h"
 #include "tests/pipeline/program.h"
 #include "tests/pipeline/tiny_scene.h"
 
@@ -145,6 +148,81 @@ TEST(WrongNumbers, SimulationThatCannotGoOnIsFour) {
   EXPECT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("ball"));
   EXPECT_FALSE(fs::exists(scene.out() / "sim/steps.csv"));
+}
+
+// Asked for the impossible, a character tries; the run ends as any other, and says what was not reached and
+// why.
+struct Impossible {
+  const char* name;
+  std::string scene, body;
+  std::vector<std::string> settings;
+  std::vector<std::string> says;
+};
+
+class ImpossibleTest : public testing::TestWithParam<Impossible> {};
+
+TEST_P(ImpossibleTest, IsTriedAndTold) {
+  const testing_support::TemporaryFolder folder;
+  std::vector<std::string> arguments = {"simulate", VIVIFY_SOURCE_DIR "/configs/" + GetParam().scene, "-o",
+                                        (folder / "out").string(), "--progress=none"};
+  for (const std::string& setting : GetParam().settings)
+    arguments.insert(arguments.end(), {"--set", setting});
+  const Outcome outcome = vivify(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto summary = nlohmann::json::parse(read_text_file(folder / "out/sim/summary.json"));
+  const auto& arrival = summary["bodies"][GetParam().body]["arrival"];
+  EXPECT_EQ(arrival["arrived"], false) << summary;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: " + GetParam().body + ": did not arrive at ["));
+  for (const std::string& part : GetParam().says) {
+    EXPECT_THAT(arrival["reasons"].dump(), HasSubstr(part));
+    EXPECT_THAT(outcome.err, HasSubstr(part));
+  }
+}
+
+std::vector<std::string> sent_to(const std::string& place, std::vector<std::string> more = {}) {
+  more.insert(more.end(), {"frames.duration_s=2.5", "bodies.cup.controller.heading_deg=null",
+                           "bodies.cup.controller.to=" + place});
+  return more;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Asked, ImpossibleTest,
+    testing::Values(Impossible{"too_soft",
+                               "teacup.yaml",
+                               "cup",
+                               sent_to("[1, 0, 0]", {"bodies.cup.model.stiffness=8000",
+                                                     "bodies.cup.model.volume_stiffness=8000"}),
+                               {"too soft to hold it up", "it never left the ground"}},
+                    Impossible{"no_friction",
+                               "teacup.yaml",
+                               "cup",
+                               sent_to("[1, 0, 0]", {"colliders.table.friction=0"}),
+                               {"the ground gave it no hold", "as without friction"}},
+                    Impossible{
+                        "in_the_air", "teacup.yaml", "cup", sent_to("[0.6, 3, 0]"), {"above its head"}},
+                    Impossible{"too_far",
+                               "teacup.yaml",
+                               "cup",
+                               sent_to("[6, 0, 0]"),
+                               {"the clip ended while it was on its way"}},
+                    Impossible{"walker_on_ice",
+                               "castle_solid.yaml",
+                               "castle",
+                               {"colliders.table.friction=0"},
+                               {"the ground gave it no hold"}}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(Possible, IsToldInTheSummaryAlone) {
+  const testing_support::TemporaryFolder folder;
+  const Outcome outcome = vivify({"simulate", VIVIFY_SOURCE_DIR "/configs/castle_solid.yaml", "-o",
+                                  (folder / "out").string(), "--progress=none"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto summary = nlohmann::json::parse(read_text_file(folder / "out/sim/summary.json"));
+  const auto& arrival = summary["bodies"]["castle"]["arrival"];
+  EXPECT_EQ(arrival["arrived"], true) << summary;
+  EXPECT_EQ(arrival["reasons"].size(), 0);
+  EXPECT_LE(arrival["missing_m"], 0.2);
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("did not arrive")));
 }
 
 // A disk that is full in the middle of one file of each kind.

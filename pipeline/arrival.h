@@ -1,0 +1,33 @@
+// Whether a character got to the place that it was sent to, and if not, what kept it from there: read off
+// what happened, for the summary of a run.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/matrix.h"
+#include "common/value.h"
+#include "pipeline/step_table.h"
+
+namespace vivify::pipeline {
+
+struct Arrival {
+  Eigen::Vector3d place;             // m
+  double missing = 0;                // level distance from the centre of mass at the end, m
+  bool arrived = false;              // within 0.2 of the body's width, and not above its head
+  std::vector<std::string> reasons;  // why not, in words
+};
+
+// The place where the last travel of a body's controller or script ends; nothing when it ends nowhere.
+std::optional<Eigen::Vector3d> destination(const Value& body);
+
+// `rest` and `last`: the body at rest and in the last frame (#V by d, m). `gravity` in m/s².
+Arrival judge_arrival(const Value& body, const Eigen::Vector3d& place, const StepTable& steps, double gravity,
+                      const RowMatrixXd& rest, const RowMatrixXd& last);
+
+// "cup: did not arrive at [2, 0, 1]: 1.20 m short; it fell over at 2.3 s".
+std::string describe(const std::string& body, const Arrival& arrival);
+
+}  // namespace vivify::pipeline
