@@ -1,5 +1,5 @@
-"""Paints pirate.png for the outline in pirate.svg: it fills the box around it. `python3 make.py` writes it beside this file;
-`--check` compares instead."""
+"""Paints pirate.png for the outline in pirate.svg: it fills the box around it. Writes the poses that his rest shape mixes,
+and sculpts treasure.glb, a chest. `python3 make.py` writes them beside this file; `--check` compares instead."""
 
 import pathlib
 import re
@@ -15,6 +15,8 @@ import sculpt
 from picture import Picture
 
 ROWS = 720
+HIPS, ANKLES = 74, 100  # heights in the drawing
+STRIDE, STRETCH, LEAN_DEG = 0.2, 0.12, 20  # of the poses, m
 INK, HAT, GOLD, BONE = (26, 20, 22), (38, 34, 46), (222, 168, 60), (240, 234, 216)
 SKIN, ROSE, HAIR, WHITE, BLUE = (226, 164, 118), (214, 112, 86), (92, 46, 24), (250, 248, 242), (48, 104, 150)
 COAT, SHADE, SHIRT, BELT = (150, 32, 36), (112, 20, 28), (236, 228, 206), (70, 42, 26)
@@ -76,16 +78,16 @@ def paint():
     lay(area((40.2, 40), (60, 40), (60, 68), (40.0, 68)), STEEL)
 
     # Legs.
-    lay(area((-40, 74), (60, 74), (60, 105), (-40, 105)), TROUSERS)
-    lay(area((2, 82.5), (60, 82.5), (60, 105), (2, 105)), BOOT)
-    lay(area((2, 80.5), (30, 80.5), (30, 84.5), (2, 84.5)), BELT)
-    lay(area((2, 97.6), (60, 97.6), (60, 105), (2, 105)), INK)
-    lay(np.abs(area((20, 90), (27, 90), (27, 95), (20, 95))) - 0.6, GOLD)
-    lay(area((-40, 79), (-3, 79), (-3, 105), (-40, 105)), WOOD)
-    lay(np.maximum(np.abs(y - 85.6) - 0.8, x + 3), GRAIN)
-    lay(np.maximum(np.abs(y - 98.8) - 1.2, x + 3), GRAIN)
-    lay(line(0.22, (-17.6, 88), (-17.2, 96)), GRAIN)
-    lay(line(0.22, (-14, 90), (-14, 97)), GRAIN)
+    lay(area((-40, 74), (60, 74), (60, 112), (-40, 112)), TROUSERS)
+    lay(area((2, 88), (60, 88), (60, 112), (2, 112)), BOOT)
+    lay(area((2, 85.5), (30, 85.5), (30, 89.5), (2, 89.5)), BELT)
+    lay(area((2, 103.4), (60, 103.4), (60, 112), (2, 112)), INK)
+    lay(np.abs(area((20, 96), (27, 96), (27, 101), (20, 101))) - 0.6, GOLD)
+    lay(area((-40, 83.5), (-3, 83.5), (-3, 112), (-40, 112)), WOOD)
+    for rim_y in (85, 101.4):
+        lay(np.maximum(np.abs(y - rim_y) - 0.8, x + 3), GRAIN)
+    lay(line(0.22, (-20.0, 90), (-19.6, 98)), GRAIN)
+    lay(line(0.22, (-16, 88), (-16, 96)), GRAIN)
 
     # Head: hair behind, skin, beard and mouth, an eye, and a patch's band.
     lay(area((-40, 10), (60, 10), (60, 33), (41, 50), (30, 50.2), (14, 49), (-10, 43), (-14, 42), (-40, 40)), HAIR)
@@ -122,9 +124,69 @@ def paint():
     return image.indexed()
 
 
+def poses():
+    """Pose files by name: each foot moved to and fro, each leg longer and shorter, the hips to either side. In metres, for a
+    pirate of 1 m."""
+    rim = outline()
+    (left, top), (right, bottom) = rim.min(axis=0), rim.max(axis=0)
+
+    def share(x, y):
+        return np.array([(x - left) / (right - left), (bottom - y) / (bottom - top)])
+
+    def region(x0, y0, x1, y1):
+        low, high = share(x0, y1) - 0.001, share(x1, y0) + 0.001
+        return f"region: {{min: [{low[0]:.4f}, {low[1]:.4f}, 0], max: [{high[0]:.4f}, {high[1]:.4f}, 1]}}"
+
+    def above(y):
+        return region(left, top, right, y)
+
+    feet = {"peg": region(left, ANKLES, 0, bottom), "boot": region(0, ANKLES, right, bottom)}
+    texts = {}
+
+    def write(name, about, *handles):
+        texts[f"{name}.yaml"] = f"# The pirate: {about}.\nversion: 1\nhandles:\n" + "".join(
+            f"  - {{{handle}}}\n" for handle in handles)
+
+    for foot, other in (("peg", "boot"), ("boot", "peg")):
+        for name, x, y, about in (("forward", STRIDE, 0, "forward"), ("back", -STRIDE, 0, "back"),
+                                  ("long", 0, -STRETCH, "down"), ("short", 0, STRETCH, "up")):
+            write(f"{foot}_{name}", f"the foot of the {foot} leg moved {about}", f"{above(HIPS)}, pin: true",
+                  f"{feet[other]}, pin: true", f"{feet[foot]}, move: [{x}, {y}, 0]")
+    about = "[{:.4f}, {:.4f}, 0.5]".format(*share(0, HIPS))
+    for name, way in (("left", -1), ("right", 1)):
+        write(f"hips_{name}", f"the body shifted to the {name} above the feet",
+              f"{region(left, ANKLES, right, bottom)}, pin: true", f"{above(HIPS)}, move: [{way * STRIDE}, 0, 0]")
+        write(f"tilt_{name}", f"the body leaning to the {name} above the hips",
+              f"{region(left, HIPS + 3, right, bottom)}, pin: true",
+              f"{above(HIPS - 8)}, rotate_deg: {-way * LEAN_DEG}, axis: [0, 0, 1], about: {about}")
+    return {name: text.encode() for name, text in texts.items()}
+
+
+def chest(p):
+    body = sculpt.box(p, (0, 0.10, 0), (0.19, 0.10, 0.12), 0.01)
+    lid = np.maximum(np.hypot(p[:, 1] - 0.20, p[:, 2]) - 0.12, np.abs(p[:, 0]) - 0.19)
+    return np.minimum(body, np.maximum(lid, 0.195 - p[:, 1]))
+
+
+def fittings(p):
+    """Hoops around the chest, a rim and a lock."""
+    hoops = np.maximum(chest(p) - 0.008, np.abs(np.abs(p[:, 0]) - 0.125) - 0.022)
+    rim = np.maximum(chest(p) - 0.008, np.abs(p[:, 1] - 0.2) - 0.014)
+    return np.minimum(np.minimum(hoops, rim), sculpt.box(p, (0, 0.19, 0.125), (0.03, 0.035, 0.015), 0.006))
+
+
+def treasure():
+    parts = []
+    for name, shape, color in (("wood", chest, (0.26, 0.11, 0.04)), ("gold", fittings, (0.80, 0.55, 0.14))):
+        vertices, triangles = sculpt.surface(shape, (-0.24, -0.04, -0.18), (0.24, 0.38, 0.18), 0.0125)
+        parts.append({"name": name, "positions": vertices, "triangles": triangles, "color": color, "metallic": 0.0,
+                      "roughness": 0.4})
+    return files.glb_bytes("treasure", parts, generator="assets/pirate/make.py")
+
+
 def make():
-    return {"pirate.png": files.png_bytes(*paint())}
+    return {"pirate.png": files.png_bytes(*paint()), "treasure.glb": treasure(), **poses()}
 
 
 if __name__ == "__main__":
-    generator.main(make, __file__, "Makes pirate.png.")
+    generator.main(make, __file__, "Makes the pirate's picture, poses and treasure.")

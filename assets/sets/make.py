@@ -3,6 +3,7 @@
 ramp.glb    a floor of `planks`, 8 m wide, its top in y = 0 up to z = 0; then it rises by 10 degrees for 6 m to a landing;
             a `line` is painted across it before the rise and after it
 dunes.glb   sand, 3 m wide, level to x = 0.5, then uneven for 15 m: what varies is its height along x
+shore.glb   sand, 4 m wide, from x = -4 to 6 m, with bumps of 4.5 cm; level where |x| < 0.3
 board.glb   a chopping board with a handle, 2.4 m by 0.9 m and 0.07 m high, lying on y = 0; the handle points to +x
 track.glb   a running track with two lanes along z on a `lawn`, its top in y = 0: `paint` beside the lanes and where the race
             begins, at z = -2.1, and squares (`dark`, `paint`) across z = 0, where it ends
@@ -78,6 +79,15 @@ def dunes():
     turns = 2 * np.pi * x
     rise = 0.034 * np.sin(turns / 1.83 + 0.4) + 0.026 * np.sin(turns / 1.07) + 0.040 * np.sin(turns / 3.9 + 2.0)
     line, _ = section(1.5, 0.5, 0.15)
+    vertices, triangles = sweep(line, np.stack([x, fade**2 * (3 - 2 * fade) * rise], axis=1))
+    return vertices[:, [2, 1, 0]] * (1, 1, -1), triangles
+
+
+def shore():
+    x = np.linspace(-4.0, 6.0, 251)
+    fade = np.clip((np.abs(x) - 0.3) / 0.4, 0, 1)
+    rise = 0.015 * np.sin(2 * np.pi * x / 1.4) + 0.010 * np.sin(2 * np.pi * x / 0.854 + 1)
+    line, _ = section(2.0, 0.5, 0.15)
     vertices, triangles = sweep(line, np.stack([x, fade**2 * (3 - 2 * fade) * rise], axis=1))
     return vertices[:, [2, 1, 0]] * (1, 1, -1), triangles
 
@@ -158,11 +168,12 @@ def glb(name, *solids, genus=0, **more):
 
 def make():
     *floor, uv = ramp()
-    sand, board = dunes(), sculpt.surface(board_shape, (-1.3, -0.02, -0.5), (1.5, 0.1, 0.5), 0.022)
+    sand, coast, board = dunes(), shore(), sculpt.surface(board_shape, (-1.3, -0.02, -0.5), (1.5, 0.1, 0.5), 0.022)
     grain = board[0][:, [0, 2]] / PLANKS + (0.31, 0.25)
     return {
         "ramp.glb": glb("ramp", floor, uv=uv),
         "dunes.glb": glb("dunes", (*sand, np.full(len(sand[1]), "sand"))),
+        "shore.glb": glb("shore", (*coast, np.full(len(coast[1]), "sand"))),
         "board.glb": glb("board", (*board, np.full(len(board[1]), "board")), genus=1, uv=grain),
         "track.glb": glb("track", track()),
         "gate.glb": glb("gate", *gate()),
