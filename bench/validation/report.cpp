@@ -99,7 +99,9 @@ void write_report(const std::vector<Result>& results, const std::filesystem::pat
       "same "
       "problems on smaller meshes and assert their tolerances. Errors and tolerances are relative, or "
       "absolute "
-      "where the reference is 0.\n\n";
+      "where the reference is 0.\n\nWhether the scenes of the cast bear changes of material, friction and "
+      "pushes is in "
+      "[robustness.md](robustness.md).\n\n";
   for (const Result& result : results) {
     for (const Plot& plot : result.plots) {
       const std::filesystem::path svg = folder / (plot.name + ".svg");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "tests/pipeline/walk_steps.h"
@@ -62,17 +63,19 @@ std::string ace_of_the_examples_misses(const SceneResult& run) {
 
 // The place of a letter in the word, by x.
 Role letter(const char* name, double place, double width) {
-  return {.scene = "letters",
-          .body = name,
-          .gait = Gait::hop,
-          .height = 1,
-          .width = width,
-          .in_plane = true,
-          .place = Eigen::Vector3d(place, 0, 0),
-          .distance = 9,
-          .flights = 8,
-          .course = "behavior[1].hop",
-          .besides = {"behavior[0].wait.for_s=0.2"}};
+  const bool waits = std::string_view(name) != "S";  // for its turn
+  return {
+      .scene = "letters",
+      .body = name,
+      .gait = Gait::hop,
+      .height = 1,
+      .width = width,
+      .in_plane = true,
+      .place = Eigen::Vector3d(place, 0, 0),
+      .distance = 9,
+      .flights = 8,
+      .course = waits ? "behavior[1].hop" : "behavior[0].hop",
+      .besides = waits ? std::vector<std::string>{"behavior[0].wait.for_s=0.2"} : std::vector<std::string>()};
 }
 
 Role grape(const char* name) {
@@ -223,11 +226,11 @@ std::vector<Errand> errands(const Role& role) {
                  .height = role.height,
                  .width = role.width,
                  .in_plane = role.in_plane};
-  wanted.distance = role.gait == Gait::walk ? 0.4 * role.height : role.height;
+  wanted.distance = 0.5 * role.height;
   const std::vector<double> all = {0, 45, 90, 135, 180, -135, -90, -45}, plane = {90, -90};
   for (const double heading : role.in_plane ? plane : all) {
     wanted.heading_deg = heading;
-    add(words("heading %g", heading), words("heading_deg=%g", heading), 6, wanted);
+    add(words("heading %g", heading), words("heading_deg=%g", heading), 8, wanted);
   }
   wanted.heading_deg = {};
   wanted.distance = 0;
@@ -235,7 +238,7 @@ std::vector<Errand> errands(const Role& role) {
                                      line = {{1.1, 0, 0}, {0.7, 0, 0}, {-0.8, 0, 0}, {-1.2, 0, 0}};
   for (const Eigen::Vector3d& place : role.in_plane ? line : level) {
     wanted.place = place;
-    add(words("to (%g, %g)", place.x(), place.z()), words("to=[%g, 0, %g]", place.x(), place.z()), 12,
+    add(words("to (%g, %g)", place.x(), place.z()), words("to=[%g, 0, %g]", place.x(), place.z()), 16,
         wanted);
   }
   return list;

@@ -42,8 +42,9 @@ struct Errand {
   std::vector<std::string> options;  // of the command line
   Role role;
 };
-// Eight headings and four places, on bodies of the plane two headings; none for roles without `course`. The
-// character begins at the origin, and the others of its scene never appear.
+// Eight headings (of bodies of the plane two), along each of which it gets by half its height or more in 8 s,
+// and four places, where it is after 16 s; none for roles without `course`. The character begins at the
+// origin, and the others of its scene never appear.
 std::vector<Errand> errands(const Role& role);
 
 // What a character does not do of what its role asks for: "hops 3 times, not 8". It must not fall, either:
