@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "tests/pipeline/sway_and_twist.h"
 #include "tests/pipeline/walk_steps.h"
 
 namespace vivify::testing_support {
@@ -59,6 +60,30 @@ std::string ace_of_the_examples_misses(const SceneResult& run) {
   const double turn = turn_deg(run, "ace", 1, 168);
   if (std::abs(turn) < 90) return words("turns by %.0f deg", turn);
   return run.velocity(run.rows("ace").back()).norm() > kAtRest ? "does not stand at the end" : "";
+}
+
+std::string dark_misses(const SceneResult& run) {
+  const double dark = sway_deg(run, "dark"), light = sway_deg(run, "light");
+  return dark >= 3 && dark >= 1.5 * light ? "" : words("sways by %.1f deg, light by %.1f deg", dark, light);
+}
+
+std::string light_misses(const SceneResult& run) {
+  const double dark = twist_deg(run, "dark"), light = twist_deg(run, "light");
+  return light >= 4 && light >= 1.5 * dark ? "" : words("twists by %.1f deg, dark by %.1f deg", light, dark);
+}
+
+Role racer(const char* name, double x, std::string (*missing)(const SceneResult&)) {
+  return {.scene = "crusty_race",
+          .body = name,
+          .gait = Gait::hop,
+          .height = 0.99,
+          .width = 0.807,
+          .place = Eigen::Vector3d(x, 0, 1.2),
+          .distance = 2.2,
+          .flights = 8,
+          .missing = missing,
+          .course = "behavior[1].hop",
+          .besides = {"behavior[0].wait.for_s=0.1"}};
 }
 
 // The place of a letter in the word, by x.
@@ -138,6 +163,8 @@ std::vector<Role> make_roles() {
                              grape("grape4"),
                              grape("grape5"),
                              grape("grape6"),
+                             racer("dark", 0.6, dark_misses),
+                             racer("light", -0.6, light_misses),
                              {.scene = "ace_cage",
                               .body = "ace",
                               .gait = Gait::hop,

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/cast.h"
+#include "tests/pipeline/sway_and_twist.h"
 
 namespace vivify::pipeline {
 namespace {
 
 using testing_support::expect_played;
 using testing_support::SceneRun;
+using testing_support::sway_deg;
+using testing_support::twist_deg;
 
 TEST(Cast, TheSphereRollsAlongACurveAndUpARamp) { expect_played(SceneRun("sphere.yaml"), "sphere"); }
 
@@ -24,6 +27,16 @@ TEST(Cast, AceOfExamplesHopsAndTurnsAThirdRound) {
   const SceneRun run("ace_examples.yaml");
   expect_played(run, "ace_examples");
   EXPECT_LE(run.most("ace", "tilt_deg"), 15);
+}
+
+// The kinematic objectives are the same; what differs is the rest space.
+TEST(Cast, OneCrustySwaysAndTheOtherTwistsToTheEndOfTheRace) {
+  const SceneRun run("crusty_race.yaml");
+  expect_played(run, "crusty_race");
+  EXPECT_NEAR(run.vertices("dark", 1).size(), 114, 11);
+  EXPECT_NEAR(run.vertices("light", 1).size(), 114, 11);
+  EXPECT_GE(sway_deg(run, "dark"), 2 * sway_deg(run, "light"));
+  EXPECT_GE(twist_deg(run, "light"), 2 * twist_deg(run, "dark"));
 }
 
 }  // namespace
