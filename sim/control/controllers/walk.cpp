@@ -168,7 +168,7 @@ class WalkController final : public Controller {
       previous_ = count();
       way_.forward = Eigen::Vector3d::Zero();
     }
-    std::vector<Eigen::Vector3d> all, staying;
+    std::vector<Eigen::Vector3d> every, all, staying;
     double ground = 0, bearing = 0;
     for (int i = 0; i < count(); ++i) {
       double load = 0, lowest = std::numeric_limits<double>::infinity();
@@ -178,6 +178,7 @@ class WalkController final : public Controller {
         lowest = std::min(lowest, points.back().y());
         if (now.loads.size() > 0) load += now.loads[v];
       }
+      every.insert(every.end(), points.begin(), points.end());
       loaded_[i] = stands(body_, load);
       if (loaded_[i]) {
         all.insert(all.end(), points.begin(), points.end());
@@ -190,6 +191,7 @@ class WalkController final : public Controller {
     if (bearing > 0) ground_ = ground / bearing;
     all_ = Support(all.empty() ? staying : all);
     staying_ = Support(staying);
+    amid_ = Support(every).middle();
     const double rise = std::max(centre_.y() - ground_, 0.1 * body_.height);
     pendulum_ = std::sqrt(body_.gravity / rise);
   }
@@ -208,9 +210,10 @@ class WalkController final : public Controller {
   Eigen::Vector3d capture_point() const { return level(centre_ + velocity_ / pendulum_); }
   // From the support to the capture point, where it is outside.
   Eigen::Vector3d falling() const { return capture_point() - staying_.nearest(capture_point()); }
-  // Of the capture point from where it shall be.
+  // Of the capture point from where it shall be: above the feet that stay, on the side of the one that steps,
+  // which can catch a fall to its side only.
   Eigen::Vector3d miss() const {
-    return capture_point() - (phase_ == kStand ? all_.middle() : staying_.nearest(all_.middle(), kInset));
+    return capture_point() - (phase_ == kStand ? all_.middle() : staying_.nearest(amid_, kInset));
   }
   Eigen::Vector3d wanted_push() const { return capture_point() + kCaptureGain * miss(); }
 
@@ -378,7 +381,8 @@ class WalkController final : public Controller {
   Eigen::Vector3d centre_, velocity_;
   Eigen::Matrix3d orientation_;
   std::vector<bool> loaded_;  // feet that the ground bears
-  Support all_, staying_;     // under all feet, and under all but the one that steps
+  Support all_, staying_;     // under all feet that bear the body, and under all but the one that steps
+  Eigen::Vector3d amid_;      // all feet, m
   double ground_ = 0;         // height under the feet that bear the body, m
   double pendulum_ = 0;       // ω, 1/s
 };
