@@ -23,6 +23,8 @@ using testing_support::Steps;
 
 struct WalkScene {
   const char* name;
+  const char* body;
+  int steps;
   double dofs, parameters;     // of Table 1
   std::vector<double> places;  // x to walk to, m; the first is that of the scene
 };
@@ -49,21 +51,22 @@ TEST_P(WalkScenes, TakesStepsAndStandsAtItsPlace) {
     const testing_support::Outcome outcome = testing_support::vivify(command);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const auto summary = nlohmann::json::parse(read_text_file(out / "sim/summary.json"));
-    const auto& body = summary["bodies"]["castle"];
+    const auto& body = summary["bodies"][GetParam().body];
     EXPECT_NEAR(body["dofs"], GetParam().dofs, 0.1 * GetParam().dofs);
 
+    const std::string group = std::string("/bodies/") + GetParam().body;
     std::vector<RowMatrixXd> frames;
     for (int frame = 1; frame <= summary["frames"]; ++frame) {
       const std::string number = std::to_string(10000 + frame).substr(1);
       const Hdf5Reader file(out / ("sim/frames/" + number + ".h5"));
-      EXPECT_NEAR(static_cast<double>(file.vector("/bodies/castle/p").size()), GetParam().parameters,
+      EXPECT_NEAR(static_cast<double>(file.vector(group + "/p").size()), GetParam().parameters,
                   0.1 * GetParam().parameters);
-      frames.push_back(file.matrix("/bodies/castle/x"));
+      frames.push_back(file.matrix(group + "/x"));
     }
     const Foot left = foot_of(frames.front(), true), right = foot_of(frames.front(), false);
-    EXPECT_GE(count_steps(frames, kHeight, side), 8);
-    const double middle = (left.place(frames.back()) + right.place(frames.back())) / 2;
-    EXPECT_NEAR(middle, place, 0.15);
+    EXPECT_GE(count_steps(frames, kHeight, side), GetParam().steps);
+    const auto middle = [&](const RowMatrixXd& x) { return (left.place(x) + right.place(x)) / 2; };
+    EXPECT_NEAR(middle(frames.back()) - middle(frames.front()), place, 0.15);
 
     const Steps rows(out / "sim/steps.csv");
     EXPECT_LE(rows.largest("tilt_deg"), 45);
@@ -71,16 +74,19 @@ TEST_P(WalkScenes, TakesStepsAndStandsAtItsPlace) {
     EXPECT_LE(rows.largest("max_penetration_m"), 0.01 * kHeight);
     EXPECT_LE(rows.largest("p_rate"), 12 * kHeight);
     EXPECT_LT(rows.largest("rest_rate_per_s"), 12);
-    const double weight = 9.81 * Hdf5Reader(out / "mesh/castle.h5").vector("/mass").sum();
+    const double weight =
+        9.81 * Hdf5Reader(out / "mesh" / (std::string(GetParam().body) + ".h5")).vector("/mass").sum();
     EXPECT_LE(rows.largest("internal_force_sum_n"), 1e-9 * weight);
     EXPECT_LE(rows.largest("internal_torque_sum_nm"), 1e-9 * weight * kHeight);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Castle, WalkScenes,
-                         ::testing::Values(WalkScene{"castle_solid.yaml", 142, 22, {1.4, -0.9}},
-                                           WalkScene{"castle_rod.yaml", 64, 22, {0.9}}),
-                         [](const auto& tested) { return tested.index == 0 ? "Solid" : "Rod"; });
+constexpr const char* kLabels[] = {"CastleSolid", "CastleRod", "Pirate"};
+INSTANTIATE_TEST_SUITE_P(Flat, WalkScenes,
+                         ::testing::Values(WalkScene{"castle_solid.yaml", "castle", 8, 142, 22, {1.4, -0.9}},
+                                           WalkScene{"castle_rod.yaml", "castle", 8, 64, 22, {0.9}},
+                                           WalkScene{"pirate.yaml", "pirate", 10, 188, 12, {1.2, -1.3}}),
+                         [](const auto& tested) { return std::string(kLabels[tested.index]); });
 
 }  // namespace
 }  // namespace vivify::pipeline
