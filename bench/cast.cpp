@@ -30,7 +30,7 @@ constexpr Row kRows[] = {
     {"sphere", "sphere", "246/24", 2.6},     {"tea_cups", "cup", "228-375/24", 5.64},
     {"tea_cups", "mug", "228-375/24", 5.64}, {"tea_cups", "espresso", "228-375/24", 5.64},
     {"castle_solid", "castle", "142/22", 1.1},
-    {"castle_rod", "castle", "64/22", 0.57},
+    {"castle_rod", "castle", "64/22", 0.57}, {"pirate", "pirate", "188/12", 3.16},
     {"crusty_race", "light", "114/12", 7.8}, {"crusty_race", "dark", "114/57", 9.8},
     {"cheesy", "cheesy", "243/150", 8.6},    {"ace_cage", "ace", "231/42", 14.1},
     {"ace_examples", "ace", "231/3", 9.2},   {"cross", "cross", "1128/6", 21.7},
