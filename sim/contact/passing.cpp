@@ -8,6 +8,7 @@ namespace {
 constexpr double kLedge = 0.5;  // of the gap: how far surfaces that are flush may be from each other
 
 constexpr double kAlike = 0.5;  // cosine of two normals; such places are found again after the step
+constexpr int kLooks = 8;       // parts of a way at whose ends a point must be outside
 
 }  // namespace
 
@@ -28,10 +29,15 @@ void follow_passing(SurfacePair& pair, const SurfaceState& a, const SurfaceState
   const double radii = a.surface().radius + b.surface().radius;
   if (pair.distance < radii || pair.distance + pair.normal.dot(move) > radii) return;
   const Eigen::Vector3d y = point.point(point_of_a ? pair.feature_a : pair.feature_b);
-  const std::optional<SurfacePlace> there = face.nearest(y + (point_of_a ? 1 : -1) * move, INFINITY);
+  const Eigen::Vector3d way = point_of_a ? move : -move;
+  const std::optional<SurfacePlace> there = face.nearest(y + way, INFINITY);
   if (!there || there->distance < radii + apart) return;
   const Eigen::Vector3d normal = point_of_a ? there->normal : -there->normal;
   if (normal.dot(pair.normal) > kAlike) return;
+  for (int k = 1; k < kLooks; ++k) {
+    const std::optional<SurfacePlace> between = face.nearest(y + k * way / kLooks, INFINITY);
+    if (between && between->distance < radii - apart) return;
+  }
   pair.normal = normal;
   (point_of_a ? pair.b : pair.a) = there->points;
   (point_of_a ? pair.weight_b : pair.weight_a) = there->weights;

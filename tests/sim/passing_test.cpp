@@ -67,6 +67,18 @@ TEST(Passing, APointThatRunsIntoAFaceKeepsIt) {
   }
 }
 
+TEST(Passing, APointThatIsFastEnoughToComeOutBehindDoesNotPass) {
+  const Placed floor({0, 0, 0});
+  for (const double rise : {-0.2, 0.9}) {  // straight through; over the first edge and out of the back
+    const Placed bullet({-2.2, 1.2, 0.3});
+    const SurfacePair before = pair_of_corner(bullet.state, floor.state, {-1.2, 0.2, -0.7});
+    SurfacePair pair = before;
+    follow_passing(pair, bullet.state, floor.state, {2.5, rise, 0}, 0.001);
+    EXPECT_EQ(pair.normal, before.normal);
+    EXPECT_EQ(pair.weight_b, before.weight_b);
+  }
+}
+
 TEST(Passing, TheSidesOfFlushBodiesAreCovered) {
   const Placed body({0, 0, 0});
   const Vector3d edge(-1, 1, 0.2), left = -Vector3d::UnitX();
