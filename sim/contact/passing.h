@@ -10,10 +10,10 @@ Eigen::Vector3d place_of(const SurfaceState& surface, const std::array<int, 3>& 
                          const std::array<double, 3>& weights);
 
 // A point that gets far may cross the plane of its nearest place and yet be outside in the end: it passes
-// over an edge, say. When the pair's point moves by `move` (of a as seen from b, m), is then still farther than
-// `apart` (m) from the other surface, on another side of it, and was nowhere deeper inside than that on its
-// straight way, the pair gets the place and the normal nearest there; its distance stays that of now. Faces of shells and rods have no outside; their pairs stay
-// as they are.
+// over an edge, say. When the pair's point moves by `move` (of a as seen from b, m), is then still farther
+// than `apart` (m) from the other surface, on another side of it, and was nowhere deeper inside than that on
+// its straight way, the pair gets the place and the normal nearest there; its distance stays that of now.
+// Faces of shells and rods have no outside; their pairs stay as they are.
 void follow_passing(SurfacePair& pair, const SurfaceState& a, const SurfaceState& b,
                     const Eigen::Vector3d& move, double apart);
 
