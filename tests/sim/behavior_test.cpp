@@ -28,7 +28,7 @@ struct Actor {
       : mesh(standing_box()),
         mass(lumped_mass(sim_mesh(mesh), 300 * tet_volumes(mesh))),
         rest(flat(mesh.V)),
-        body{mass, rest, 1, 9.81, 0.02},
+        body{mass, rest, 1, 9.81, 0.02, 1},
         script(make_script(body, script_of(yaml))) {}
   std::size_t step(Others others = {}) {
     return script->goals({rest, Vector::Zero(rest.size()), 9.81 * mass.sum(), {}, others}).size();
@@ -50,6 +50,18 @@ TEST(Behavior, OneFollowsAnother) {
   EXPECT_THAT(phases,
               ElementsAre("stand", "stand", "stand", "stand", "stand", "rest", "rest", "rest", "crouch"));
   EXPECT_FALSE(actor.script->arrived());
+}
+
+TEST(Behavior, APoseOfKeyframesIsHeldAndLeft) {
+  Actor actor(
+      "[{wait: {for_s: 0.04}}, {blend: {keys: [{t: 0, weights: [0]}, {t: 0.06, weights: [1]}]}}, {wait: }]");
+  std::vector<double> weights;
+  for (int step = 0; step < 6; ++step) {
+    actor.step();
+    if (const auto p = actor.script->rest_parameters(99)) weights.push_back((*p)[0]);
+  }
+  EXPECT_THAT(weights, testing::Pointwise(testing::DoubleNear(1e-12), {1.0 / 3, 2.0 / 3, 1.0}));
+  EXPECT_EQ(actor.script->phase(), "stand");
 }
 
 TEST(Behavior, WaitsForOthersAndArrives) {

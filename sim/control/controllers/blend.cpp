@@ -14,9 +14,13 @@ struct Key {
 
 class BlendController final : public Controller {
  public:
-  BlendController(std::vector<Key> keys, bool smooth) : keys_(std::move(keys)), smooth_(smooth) {}
+  BlendController(std::vector<Key> keys, bool smooth, double h)
+      : keys_(std::move(keys)), smooth_(smooth), h_(h) {}
 
-  std::vector<Goal> goals(const Observation&) override { return {}; }
+  std::vector<Goal> goals(const Observation&) override {
+    ++steps_;
+    return {};
+  }
 
   std::optional<Eigen::VectorXd> rest_parameters(double t) const override {
     const auto next =
@@ -29,13 +33,16 @@ class BlendController final : public Controller {
     return (1 - share) * from.weights + share * next->weights;
   }
 
+  bool arrived() const override { return static_cast<double>(steps_) * h_ >= keys_.back().t; }
   std::string phase() const override { return "blend"; }
-  Eigen::VectorXd state() const override { return {}; }
-  void restore(const Eigen::VectorXd&) override {}
+  Eigen::VectorXd state() const override { return Eigen::VectorXd::Constant(1, static_cast<double>(steps_)); }
+  void restore(const Eigen::VectorXd& state) override { steps_ = static_cast<long>(state[0]); }
 
  private:
   std::vector<Key> keys_;
   bool smooth_;
+  double h_;
+  long steps_ = 0;
 };
 
 [[noreturn]] void fail(const Value& key, const std::string& message) {
@@ -46,12 +53,12 @@ class BlendController final : public Controller {
 
 Schema blend_controller_schema() {
   return object(
-             "The rest shape follows keyframes, whatever comes of it. For rest spaces of examples, with a "
-             "weight "
-             "for each.")
+             "The rest shape follows keyframes, whatever comes of it, and has arrived at the last one. For "
+             "rest spaces of examples, with a weight for each.")
       .field(
           "keys",
-          list("The keyframes, in the order of time. Before the first and after the last the weights stay.",
+          list("The keyframes, in the order of time; in a script, time begins with the behaviour. Before the "
+               "first and after the last the weights stay.",
                object("Weights at a time.")
                    .field("t", number("Time.").unit("s").at_least(0).required())
                    .field("weights",
@@ -82,7 +89,8 @@ std::unique_ptr<Controller> make_blend_controller(const ControlledBody& body, co
     }
     keys.push_back(std::move(key));
   }
-  return std::make_unique<BlendController>(std::move(keys), settings["between"].as_string() == "smooth");
+  return std::make_unique<BlendController>(std::move(keys), settings["between"].as_string() == "smooth",
+                                           body.h);
 }
 
 }  // namespace vivify::sim
