@@ -192,7 +192,9 @@ class SemanticCheck {
       }
       for (const auto& [part, settings] : behaviors_of(bodies[i])) {
         sim::check_course(settings, where + "." + part, is_planar(body_kind(bodies[i])), errors_);
-        for (const Value& other : sim::looked_at(settings)) body_exists(other, where + "." + part);
+        attempt(settings, [&] {
+          for (const Value& other : sim::looked_at(settings)) body_exists(other, where + "." + part);
+        });
       }
       for (const Value& example : examples_of(bodies[i])) {
         const std::filesystem::path pose =

@@ -70,11 +70,14 @@ class Script final : public Controller {
 
 constexpr std::string_view kArrived = ".arrived";
 
-// The body of a condition "NAME.arrived"; empty when it is none.
+// The body of a condition "NAME.arrived"; empty when there is no condition.
 std::string waited_for(const Value& behavior) {
   if (!behavior.has("until")) return {};
   const std::string& text = behavior["until"].as_string();
-  return text.ends_with(kArrived) ? text.substr(0, text.size() - kArrived.size()) : "";
+  if (text.ends_with(kArrived) && text.size() > kArrived.size())
+    return text.substr(0, text.size() - kArrived.size());
+  throw Error(ErrorKind::usage, "until = " + text + " must be NAME.arrived", "for example ball.arrived",
+              behavior["until"].where());
 }
 
 }  // namespace
@@ -115,10 +118,6 @@ std::unique_ptr<Controller> make_script(const ControlledBody& body, const Value&
     made.controller = find_entry(controllers(), name, "controller").make(body, settings);
     if (settings.has("for_s")) made.duration = settings["for_s"].as_number();
     made.until = waited_for(settings);
-    if (settings.has("until") && made.until.empty()) {
-      throw Error(ErrorKind::usage, "until = " + settings["until"].as_string() + " must be NAME.arrived",
-                  "for example ball.arrived", settings["until"].where());
-    }
   }
   return std::make_unique<Script>(std::move(behaviors), body.h);
 }

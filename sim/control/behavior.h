@@ -11,7 +11,7 @@ namespace vivify::sim {
 Schema behavior_schema();
 
 // The bodies that a controller or behaviour with these settings looks at, each a text with its place in the
-// file.
+// file. Throws Error(usage) for a condition that cannot be read.
 std::vector<Value> looked_at(const Value& settings);
 
 // Goes through the script; with its last behaviour the body goes on for ever. `body` must outlive it. Throws

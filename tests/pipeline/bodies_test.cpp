@@ -449,15 +449,17 @@ TEST(Check, RefusesHeadingsOutOfThePlane) {
 }
 
 TEST(Check, ReadsScripts) {
-  const BodyScene scene({kLetter, "model: {type: solid2d}",
-                         "behavior: [{hop: {to: [1, 0, 0], heading_deg: 90}}, {roll: {chase: nobody}},"
-                         " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}]"});
+  const BodyScene scene(
+      {kLetter, "model: {type: solid2d}",
+       "behavior: [{hop: {to: [1, 0, 0], heading_deg: 90}}, {roll: {chase: nobody}},"
+       " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}, {wait: {until: soon}}]"});
   const Outcome outcome = vivify({"check", scene.file().string()});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[0].hop.heading_deg and .to are two courses"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[1].roll = nobody: there is no such body"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[2].wait = no_one: there is no such body"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[3].hop.heading_deg leads out of the plane"));
+  EXPECT_THAT(outcome.err, HasSubstr("until = soon must be NAME.arrived"));
   const BodyScene both({kLetter, "model: {type: solid2d}", "controller: {type: hop}", "behavior: [wait:]"});
   EXPECT_THAT(vivify({"check", both.file().string()}).err,
               HasSubstr("bodies[0].controller and .behavior both say what the body does"));
