@@ -5,11 +5,13 @@
 // Only by options of the command line; whatever is random is so by fixed keys.
 //   cast_trials FOLDER [NAME [varied|sent]]
 // simulates into FOLDER; only the scenes whose name contains NAME, and only the variations or the errands.
-// The rows of all scenes that were tried in FOLDER go to docs/robustness.md.
+// The rows of docs/robustness.md are replaced, those of other scenes stay.
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 #include <thread>
 
 #include "common/error.h"
@@ -165,37 +167,49 @@ std::string report(const std::vector<Trial>& trials) {
   return std::to_string(succeeded) + " of " + std::to_string(trials.size()) + " | " + failures;
 }
 
-struct Tables {
-  std::filesystem::path folder;
-  std::filesystem::path file(const std::string& table, const std::string& row) const {
-    return folder / "rows" / (table + "_" + row + ".txt");
-  }
-  void put(const std::string& table, const std::string& row, const std::string& text) const {
-    std::filesystem::create_directories(folder / "rows");
-    write_file_atomic(file(table, row), std::as_bytes(std::span(text)));
-  }
-  std::string get(const std::string& table, const std::string& row) const {
-    return std::filesystem::exists(file(table, row)) ? read_text_file(file(table, row)) : "";
-  }
-};
-
-void try_variations(const std::string& scene, const Tables& tables) {
-  std::printf("%s: variations\n", scene.c_str());
-  std::vector<Trial> varied = variations(scene, tables.folder);
-  run_all(scene, varied, tables.folder);
-  tables.put(
-      "varied", scene,
-      "| `" + scene + "` | " + gait_name(roles_in(scene).front().gait) + " | " + report(varied) + " |\n");
+// The beginnings of the rows of the two tables.
+std::string varied_row(const std::string& scene) {
+  return "| `" + scene + "` | " + gait_name(roles_in(scene).front().gait) + " | ";
+}
+std::string sent_row(const Role& role) {
+  return "| `" + std::string(role.scene) + "` | " + role.body + " | ";
 }
 
-void try_errands(const Role& role, const Tables& tables) {
+// The rows of the document, by their beginnings: those of scenes that are not tried stay.
+class Rows {
+ public:
+  explicit Rows(const std::string& document) {
+    std::istringstream lines(document);
+    for (std::string line; std::getline(lines, line);) rows_.push_back(line + "\n");
+  }
+  void put(const std::string& beginning, const std::string& rest) {
+    std::erase(rows_, get(beginning));
+    rows_.push_back(beginning + rest + " |\n");
+  }
+  std::string get(const std::string& beginning) const {
+    const auto row = std::find_if(rows_.begin(), rows_.end(),
+                                  [&](const std::string& line) { return line.starts_with(beginning); });
+    return row == rows_.end() ? "" : *row;
+  }
+
+ private:
+  std::vector<std::string> rows_;
+};
+
+void try_variations(const std::string& scene, const std::filesystem::path& folder, Rows& rows) {
+  std::printf("%s: variations\n", scene.c_str());
+  std::vector<Trial> varied = variations(scene, folder);
+  run_all(scene, varied, folder);
+  rows.put(varied_row(scene), report(varied));
+}
+
+void try_errands(const Role& role, const std::filesystem::path& folder, Rows& rows) {
   std::vector<Trial> sent;
   for (const Errand& errand : errands(role)) sent.push_back({errand.name, errand.options, {errand.role}});
   if (sent.empty()) return;
   std::printf("%s: %s sent elsewhere\n", role.scene, role.body);
-  run_all(role.scene, sent, tables.folder);
-  tables.put("sent", role.scene + std::string("_") + role.body,
-             "| `" + std::string(role.scene) + "` | " + role.body + " | " + report(sent) + " |\n");
+  run_all(role.scene, sent, folder);
+  rows.put(sent_row(role), report(sent));
 }
 
 constexpr const char* kVaried = R"(# Robustness
@@ -223,12 +237,12 @@ and by half its height or more in 8 s, and to four places, where it is after 16 
 | --- | --- | --- | --- |
 )";
 
-std::string document(const Tables& tables) {
+std::string document(const Rows& rows) {
   std::string varied = kVaried, sent = kSent, last;
   for (const Role& role : cast_roles()) {
-    if (last != role.scene) varied += tables.get("varied", role.scene);
+    if (last != role.scene) varied += rows.get(varied_row(role.scene));
     last = role.scene;
-    sent += tables.get("sent", role.scene + std::string("_") + role.body);
+    sent += rows.get(sent_row(role));
   }
   return varied + sent;
 }
@@ -240,18 +254,19 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "cast_trials FOLDER [NAME [varied|sent]]\n");
     return 2;
   }
-  const Tables tables{argv[1]};
+  const std::filesystem::path folder = argv[1], page = VIVIFY_SOURCE_DIR "/docs/robustness.md";
   const std::string only = argc > 2 ? argv[2] : "", kind = argc > 3 ? argv[3] : "";
   try {
+    Rows rows(read_text_file(page));
     std::string last;
     for (const Role& role : cast_roles()) {
       if (std::string(role.scene).find(only) == std::string::npos) continue;
-      if (last != role.scene && kind != "sent") try_variations(role.scene, tables);
+      if (last != role.scene && kind != "sent") try_variations(role.scene, folder, rows);
       last = role.scene;
-      if (kind != "varied") try_errands(role, tables);
+      if (kind != "varied") try_errands(role, folder, rows);
     }
-    const std::string text = document(tables);
-    write_file_atomic(VIVIFY_SOURCE_DIR "/docs/robustness.md", std::as_bytes(std::span(text)));
+    const std::string text = document(rows);
+    write_file_atomic(page, std::as_bytes(std::span(text)));
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.full_text().c_str());
     return 1;
