@@ -95,8 +95,9 @@ bool draw_text(OIIO::ImageBuf& sheet, const std::string& text, int x, int y, int
                                          OIIO::ImageBufAlgo::TextAlignY::Baseline, 1);
 }
 
-// Height of the letters in a picture.
-int label_size(int width) { return std::clamp(width / 14, 9, 28); }
+// Height of the letters below a picture, and of the strip they stand in.
+int label_size(int width) { return std::clamp(width / 20, 9, 20); }
+int label_strip(int width) { return label_size(width) * 3 / 2; }
 
 // What is shown in one place of the sheet.
 struct Cell {
@@ -210,7 +211,8 @@ Bytes contact_sheet(const fs::path& folder, const SheetSettings& settings) {
   const fs::path& first = cells[chosen.front()].picture;
   const int height = std::max(1, static_cast<int>(std::lround(width / aspect_of(first, overlay))));
   const int rows = (count + columns - 1) / columns;
-  const int sheet_width = columns * (width + kGap) + kGap, pictures_height = rows * (height + kGap) + kGap;
+  const int sheet_width = columns * (width + kGap) + kGap, row_height = height + label_strip(width) + kGap;
+  const int pictures_height = rows * row_height + kGap;
   std::optional<Legend> legend;
   if (overlay) legend.emplace(sheet_width - 2 * kGap, std::clamp(width / 24, 9, 16));
   const int sheet_height = pictures_height + (legend ? legend->height() : 0);
@@ -223,7 +225,7 @@ Bytes contact_sheet(const fs::path& folder, const SheetSettings& settings) {
   for (int i = 0; i < count; ++i) {
     const Cell& cell = cells[chosen[static_cast<std::size_t>(i)]];
     const int x = kGap + i % columns * (width + kGap);
-    const int y = kGap + i / columns * (height + kGap);
+    const int y = kGap + i / columns * row_height;
     Canvas canvas(pixels.data(), sheet_width, x, y, width, height);
     if (cell.picture.empty()) {
       canvas.fill({kUnrendered, kUnrendered, kUnrendered});
@@ -232,7 +234,7 @@ Bytes contact_sheet(const fs::path& folder, const SheetSettings& settings) {
     }
     if (overlay) overlay->draw(std::stoi(cell.label), !cell.picture.empty(), canvas);
     const int size = label_size(width);
-    written = draw_text(sheet, cell.label, x + size / 2, y + height - size / 2, size) && written;
+    written = draw_text(sheet, cell.label, x, y + height + size + size / 4, size) && written;
   }
   if (legend) {
     Canvas canvas(pixels.data(), sheet_width, kGap, pictures_height, sheet_width - 2 * kGap,

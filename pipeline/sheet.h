@@ -24,9 +24,9 @@ std::vector<std::filesystem::path> list_frames(const std::filesystem::path& fold
 // The exposure that the scene of a run folder asks for; 0 for other folders.
 double exposure_of(const std::filesystem::path& folder);
 
-// The sheet as a PNG file: frames through the sRGB view transform, row by row, each with its number. The same
-// frames give the same bytes. Throws Error(usage) for settings that leave no room for a picture and Error(io)
-// when frames are missing or cannot be read.
+// The sheet as a PNG file: frames through the sRGB view transform, row by row, each above its number. The
+// same frames give the same bytes. Throws Error(usage) for settings that leave no room for a picture and
+// Error(io) when frames are missing or cannot be read.
 Bytes contact_sheet(const std::filesystem::path& folder, const SheetSettings& settings = {});
 
 }  // namespace vivify::pipeline

@@ -21,7 +21,8 @@ using testing_support::Outcome;
 using testing_support::TinyScene;
 using testing_support::vivify;
 
-constexpr int kWidth = 640, kHeight = 360, kGap = 6;
+constexpr int kWidth = 640, kHeight = 360, kGap = 6, kLabel = 30;
+constexpr int kRow = kHeight + kLabel + kGap;
 
 class DebugSheet : public testing::Test {
  protected:
@@ -87,9 +88,8 @@ TEST_F(DebugSheet, ContactsAreDrawnWhereTheyAre) {
   for (Eigen::Index i = 0; i < position.rows(); ++i) {
     const Eigen::Vector3d way = position.row(i).transpose() - eye;
     const double depth = way.dot(forward);
-    const Eigen::Vector2i at(
-        kGap + std::floor(kWidth / 2.0 + focal * way.dot(right) / depth),
-        kGap + 2 * (kHeight + kGap) + std::floor(kHeight / 2.0 - focal * way.dot(up) / depth));
+    const Eigen::Vector2i at(kGap + std::floor(kWidth / 2.0 + focal * way.dot(right) / depth),
+                             kGap + 2 * kRow + std::floor(kHeight / 2.0 - focal * way.dot(up) / depth));
     slipping += slip[i] > 0;
     EXPECT_TRUE(is_colour(image, at, slip[i] > 0 ? kSlips : kSticks) || is_colour(image, at, kForce))
         << "contact " << i << " at " << at.transpose();
@@ -133,7 +133,7 @@ TEST_F(DebugSheet, HandlesAreDrawnWhereTheyWantTheBody) {
     int found = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x)
-        found += is_colour(image, {kGap + x, kGap + (frame - 1) * (kHeight + kGap) + y}, kHeld);
+        found += is_colour(image, {kGap + x, kGap + (frame - 1) * kRow + y}, kHeld);
     }
     return found;
   };
@@ -146,9 +146,8 @@ TEST_F(DebugSheet, HandlesAreDrawnWhereTheyWantTheBody) {
     if (rest(i, 1) < 0.5 - 0.4 + 0.9 * 0.8) continue;
     ++held;
     const double scale = focal / (4 - place.z());
-    const Eigen::Vector2i at(
-        kGap + std::floor(kWidth / 2.0 + scale * place.x()),
-        kGap + 3 * (kHeight + kGap) + std::floor(kHeight / 2.0 - scale * (place.y() - 0.5)));
+    const Eigen::Vector2i at(kGap + std::floor(kWidth / 2.0 + scale * place.x()),
+                             kGap + 3 * kRow + std::floor(kHeight / 2.0 - scale * (place.y() - 0.5)));
     bool seen = false;  // the shade of a cross beside it may lie over its middle
     for (int y = -2; y <= 2; ++y) {
       for (int x = -2; x <= 2; ++x) seen |= is_colour(image, at + Eigen::Vector2i(x, y), kHeld, 40);

@@ -65,19 +65,23 @@ TEST_F(SheetTest, PicturesKeepTheirShape) {
   write_frames(folder_ / "frames", 4);
   const render::Image sheet =
       read(contact_sheet(folder_ / "frames", {.columns = 2, .frames = 4, .width = 274}));
-  EXPECT_EQ(sheet.width, 274);  // gaps of 6, pictures of 128 by 72
-  EXPECT_EQ(sheet.height, 6 + 2 * (72 + 6));
+  EXPECT_EQ(sheet.width, 274);  // gaps of 6, pictures of 128 by 72, numbers in strips of 13
+  EXPECT_EQ(sheet.height, 6 + 2 * (72 + 13 + 6));
 }
 
-TEST_F(SheetTest, NumbersAreDrawn) {
+TEST_F(SheetTest, NumbersAreBelowThePictures) {
   write_frames(folder_ / "frames", 1);
   const render::Image sheet =
-      read(contact_sheet(folder_ / "frames", {.columns = 1, .frames = 1, .width = 320}));
-  int white = 0;
-  for (int y = sheet.height / 2; y < sheet.height; ++y) {
-    for (int x = 0; x < sheet.width / 2; ++x) white += sheet.at(x, y, 0) > 0.9f && sheet.at(x, y, 2) > 0.9f;
-  }
-  EXPECT_GT(white, 40);
+      read(contact_sheet(folder_ / "frames", {.columns = 1, .frames = 1, .width = 332}));
+  const auto white = [&](int from, int to) {  // pixels of these rows
+    int found = 0;
+    for (int y = from; y < to; ++y) {
+      for (int x = 0; x < sheet.width; ++x) found += sheet.at(x, y, 0) > 0.9f && sheet.at(x, y, 2) > 0.9f;
+    }
+    return found;
+  };
+  EXPECT_EQ(white(0, 6 + 180), 0);
+  EXPECT_GT(white(6 + 180, sheet.height), 40);
 }
 
 TEST_F(SheetTest, TheSameFramesGiveTheSameBytes) {

@@ -1,0 +1,217 @@
+"""What stands around the cast and is drawn only: backdrops, marks on the ground, and the places they go to.
+`python3 make.py` writes the files beside this file; `--check` compares instead.
+
+playroom.glb   for the cross: a wall at z = -2.6 with a corner at x = 7, toys along it, tiles along x to a finish at x = 3.2
+town.glb       for the castles: a town wall which begins at x = 0 and goes on to +x, roofs behind it, hills and trees, a road
+pitch.glb      for the sphere, in the place of sets/ramp.glb: a line along its way, cones at it, and a goal on the slope
+island.glb     for the pirate, in the place of sets/shore.glb: the sea, a ship, palms, and dashes to a cross
+theatre.glb    for Ace: a stage with curtains, and a star on the floor at the origin
+signboard.glb  for the letters: a board at z < 0 with the picture signboard.png, their places in the word
+"""
+
+import pathlib
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+import files
+import generator
+from surface import verify
+from solids import ball, box, moved, plate, prism, strip, tube, turned
+
+LOOKS = {  # part -> (linear RGB, roughness)
+    "white": ((0.80, 0.79, 0.76), 0.4), "dark": ((0.02, 0.02, 0.024), 0.4), "red": ((0.62, 0.03, 0.025), 0.35),
+    "yellow": ((0.85, 0.50, 0.04), 0.35), "blue": ((0.03, 0.16, 0.50), 0.35), "green": ((0.06, 0.30, 0.07), 0.5),
+    "teal": ((0.02, 0.26, 0.28), 0.35), "gold": ((0.80, 0.52, 0.12), 0.3), "orange": ((0.80, 0.22, 0.02), 0.4),
+    "paper": ((0.42, 0.58, 0.60), 0.9), "stripe": ((0.56, 0.70, 0.70), 0.9), "skirting": ((0.80, 0.78, 0.72), 0.4),
+    "stone": ((0.60, 0.60, 0.64), 0.8), "roof": ((0.50, 0.10, 0.04), 0.6), "plaster": ((0.74, 0.62, 0.44), 0.8),
+    "road": ((0.55, 0.42, 0.26), 0.9), "hill": ((0.13, 0.33, 0.06), 1.0), "far_hill": ((0.22, 0.42, 0.26), 1.0),
+    "leaf": ((0.04, 0.20, 0.03), 0.8), "trunk": ((0.20, 0.09, 0.03), 0.8), "cloud": ((0.85, 0.87, 0.90), 1.0),
+    "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
+}
+
+
+def checks(low, high, count):
+    """Squares of a chequered rectangle in the plane (#: x0, y0, x1, y1), as (part, corners)."""
+    low, high, count = np.array(low, float), np.array(high, float), np.array(count)
+    size = (high - low) / count
+    for i, j in np.ndindex(*count):
+        a = low + size * (i, j)
+        yield ("dark", "white")[(i + j) % 2], [a, a + size * (1, 0), a + size, a + size * (0, 1)]
+
+
+def playroom():
+    wall, end, top, finish = -2.6, 7.0, 3.2, 3.2
+    for k in range(-16, 14):
+        yield ("paper", "stripe")[k % 2], box((k / 2, 0, wall - 0.1), (k / 2 + 0.5, top, wall))
+    for k in range(-5, 10):
+        yield ("paper", "stripe")[k % 2], box((end, 0, k / 2), (end + 0.1, top, k / 2 + 0.5))
+    yield "skirting", box((-8, 0, wall), (end, 0.22, wall + 0.05))
+    yield "skirting", box((end - 0.05, 0, wall + 0.05), (end, 0.22, 5))
+    # Tiles, with a line where the race begins and squares where it ends.
+    for k in range(13):
+        x = -3.9 + 0.55 * k
+        yield ("tile", "teal")[k % 2], plate([(x, -0.75), (x + 0.5, -0.75), (x + 0.5, 0.95), (x, 0.95)], -0.02, 0.0006)
+    for part, square in checks((finish, -1.5), (finish + 0.5, 2.1), (2, 14)):
+        yield part, plate(square, -0.02, 0.0006)
+    # Bricks to play with.
+    bricks = [(-5.6, 0, "red"), (-5.0, 0, "yellow"), (-5.3, 1, "blue"), (-1.9, 0, "green"), (-1.3, 0, "red"), (-1.55, 1, "yellow"),
+              (1.7, 0, "blue"), (2.4, 0, "yellow"), (2.0, 1, "red"), (2.1, 2, "green")]
+    for x, level, part in bricks:
+        yield part, moved(box((-0.25, 0, -0.25), (0.25, 0.5, 0.25)), (x, 0.5 * level, -2.15), 20 * np.sin(40 * x))
+
+
+def skyline(x, heights, low, z, depth):
+    """A silhouette standing in the plane z: from height `low` up to these heights at x."""
+    return prism([(x[0], low), (x[-1], low), *zip(x[::-1], heights[::-1])], z - depth, z)
+
+
+def tree(x, z, scale, part="leaf"):
+    yield "trunk", moved(tube([(0, -0.05, 0), (0, 0.3, 0), (0, 0.6, 0)], (0.07, 0.05, 0.04)), (x, 0, z), 0, scale)
+    for y, r in ((0.75, 0.42), (1.1, 0.34), (1.4, 0.22)):
+        yield part, moved(ball(r, squash=(1, 0.8, 1)), (x + 0.1 * np.sin(9 * y + x), scale * y, z), 0, scale)
+
+
+def cloud(x, y, z, scale):
+    for dx, dy, r in ((-0.9, 0, 0.5), (-0.2, 0.2, 0.7), (0.6, 0.05, 0.55), (1.2, -0.05, 0.35)):
+        yield "cloud", moved(ball(r, squash=(1, 0.75, 0.5)), (x + scale * dx, y + scale * dy, z), 0, scale)
+
+
+def battlements(x0, x1, top, step=0.172, depth=0.12):
+    """Outline of a wall from x0 to about x1, battlements at its top, beginning with a tooth."""
+    count = int(round((x1 - x0) / step)) // 2
+    line = [(x0, -0.02), (x0 + (2 * count + 1) * step, -0.02)]
+    for k in range(count, -1, -1):
+        a = x0 + 2 * k * step
+        line += [(a + step, top), (a, top)]
+        if k > 0:
+            line += [(a, top - depth), (a - step, top - depth)]
+    return line
+
+
+def house(x, z, width, wall, roof, turn=0.0):
+    """A house with its gable in front, a door and a window."""
+    h = width / 2
+    yield "plaster", moved(prism([(-h, 0), (h, 0), (h, wall), (0, wall + roof), (-h, wall)], -0.45, 0.45), (x, 0, z), turn)
+    e = 0.1
+    slope = np.array([(0, wall + roof + 0.08), (-h - e, wall - e * roof / h + 0.08), (-h - e, wall - e * roof / h),
+                      (0, wall + roof), (h + e, wall - e * roof / h), (h + e, wall - e * roof / h + 0.08)])
+    yield "roof", moved(prism(slope, -0.55, 0.55), (x, 0, z), turn)
+    yield "dark", moved(box((-0.09, wall - 0.05, 0.44), (0.09, wall + 0.2, 0.46)), (x, 0, z), turn)
+
+
+def pennant(x, z, low, high, part, size=0.3):
+    yield "white", moved(tube([(0, low, 0), (0, (low + high) / 2, 0), (0, high, 0)], 0.015), (x, 0, z))
+    yield part, moved(prism([(0, high), (-1.6 * size, high - 0.4 * size), (0, high - 0.9 * size)], -0.008, 0.008), (x, 0, z))
+
+
+def town():
+    # The gate tower's place is empty: the wall begins beside it.
+    yield "stone", prism(battlements(0.0, 2.6, 1.0), -0.15, 0.15)
+    yield "stone", prism(battlements(-0.62, 2.2, 0.86), -1.3, -1.05)
+    for k in range(2):
+        yield from pennant(0.09 + 1.376 * k, 0, 0.98, 1.55, ("red", "yellow")[k])
+    yield from house(0.35, -0.62, 0.62, 1.0, 0.42)
+    yield from house(1.15, -0.66, 0.7, 0.85, 0.5)
+    yield from house(1.95, -0.6, 0.66, 1.05, 0.4)
+    # A keep behind.
+    yield "stone", prism(battlements(0.5, 1.2, 2.0, 0.11, 0.1), -2.1, -1.5)
+    yield from pennant(0.9, -1.8, 1.9, 2.5, "red", 0.36)
+    yield "road", plate([(-5.5, -0.42), (2.6, -0.42), (2.6, 0.38), (-5.5, 0.38)], -0.02, 0.0006)
+    x = np.linspace(-11, 11, 90)
+    yield "hill", skyline(x, 1.0 + 0.35 * np.sin(0.7 * x + 1) + 0.12 * np.sin(2.1 * x), -0.5, -5.8, 0.3)
+    yield "far_hill", skyline(x, 1.7 + 0.5 * np.sin(0.5 * x + 2.5) + 0.2 * np.sin(1.3 * x), -0.5, -6.6, 0.3)
+    for tx, tz, size in ((-3.4, -1.7, 0.8), (-2.1, -3.2, 1.0), (-1.25, -1.9, 0.55), (-4.4, -3.8, 1.2), (3.4, -2.9, 1.0)):
+        yield from tree(tx, tz, size)
+    yield from cloud(-3.2, 2.9, -6.9, 0.5)
+    yield from cloud(-0.6, 3.4, -6.9, 0.35)
+
+
+SLOPE, BEND = np.radians(10), 3.0  # of sets/ramp.glb
+
+
+def ramp_height(x, z):
+    bend = BEND * np.sin(SLOPE)
+    return np.where(z < 0, 0, np.where(z < bend, BEND - np.sqrt(np.maximum(BEND**2 - z**2, 0)),
+                                       BEND * (1 - np.cos(SLOPE)) + (z - bend) * np.tan(SLOPE)))
+
+
+def spline(points, count):
+    """A smooth line through points (#P by 2): Catmull and Rom."""
+    p = np.asarray(points, float)
+    p = np.concatenate([2 * p[:1] - p[1:2], p, 2 * p[-1:] - p[-2:-1]])
+    t = np.linspace(0, 1, count, endpoint=False)[:, None]
+    pieces = [0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3)
+              for a, b, c, d in zip(p, p[1:], p[2:], p[3:])]
+    return np.concatenate([*pieces, p[-2:-1]])
+
+
+def cone(x, z):
+    yield "orange", moved(turned([(0, 0), (0.17, 0), (0.17, 0.02), (0.11, 0.025), (0.075, 0.17), (0, 0.17)]), (x, 0, z))
+    yield "white", moved(turned([(0, 0.165), (0.076, 0.165), (0.05, 0.27), (0, 0.27)]), (x, 0, z))
+    yield "orange", moved(turned([(0, 0.265), (0.051, 0.265), (0.022, 0.40), (0, 0.405)]), (x, 0, z))
+
+
+def pitch():
+    way = spline([(1.2, -3.4), (0.4, -2.2), (-0.5, -1.0), (0, 0.4), (0, 1.5)], 12)
+    for k in range(2, len(way) - 2, 3):
+        yield "white", strip(way[k:k + 2], 0.035, lambda x, z: ramp_height(x, z) + 0.0012, -0.01)
+    for x, z in ((1.15, -1.55), (-0.9, -2.2), (0.6, -0.2), (-1.35, -0.6)):
+        yield from cone(x, z)
+    # The goal: its line, a frame and a net.
+    front, back, half, top = 1.55, 2.75, 1.0, 1.15
+    line = np.stack([np.linspace(-1.3, 1.3, 3), np.full(3, front)], axis=1)
+    yield "white", strip(line, 0.04, lambda x, z: ramp_height(x, z) + 0.0012, -0.01)
+    ground, far = float(ramp_height(0, front)), float(ramp_height(0, back))
+    for x in (-half, half):
+        yield "white", tube([(x, ground - 0.05, front), (x, ground + 0.5, front), (x, ground + top, front)], 0.045, 12)
+        yield "white", tube([(x, ground + top, front), (x, (ground + far + top) / 2 + 0.25, (front + back) / 2 + 0.1),
+                             (x, far, back)], 0.02)
+    yield "white", tube([(-half - 0.045, ground + top, front), (0, ground + top, front),
+                         (half + 0.045, ground + top, front)], 0.045, 12)
+    for x in np.linspace(-half, half, 13):
+        yield "net", tube([(x, ground + top, front), (x, (ground + far + top) / 2 + 0.25, (front + back) / 2 + 0.1),
+                           (x, far, back)], 0.007, 5)
+    for t in np.linspace(0, 1, 11):
+        a = np.array([0, ground + top, front]), np.array([0, (ground + far + top) / 2 + 0.25, (front + back) / 2 + 0.1])
+        b = a[1], np.array([0, far, back])
+        p = (1 - 2 * t) * a[0] + 2 * t * a[1] if t < 0.5 else (2 - 2 * t) * b[0] + (2 * t - 1) * b[1]
+        yield "net", tube([p - (half, 0, 0), p, p + (half, 0, 0)], 0.007, 5)
+    # A hedge and trees around the pitch.
+    x = np.linspace(-3.9, 3.9, 40)
+    yield "leaf", skyline(x, 2.5 + 0.06 * np.sin(9 * x) + 0.05 * np.sin(23 * x), 0.2, 6.9, 0.5)
+    for tx, tz in ((-2.6, 6.2), (2.7, 6.1), (-3.4, 3.6), (3.3, 3.4)):
+        for part, solid in tree(tx, 0, 0.9):
+            yield part, moved(solid, (0, float(ramp_height(tx, tz)) - 0.02, tz))
+    side = np.linspace(-8, 6.4, 70)
+    for x0 in (-3.9, 3.9):
+        vertices, triangles = skyline(side, ramp_height(0, side) + 0.55 + 0.05 * np.sin(11 * side), -0.1, 0.15, 0.3)
+        yield "leaf", (vertices[:, [2, 1, 0]] * (-1, 1, 1) + (x0, 0, 0), triangles)
+
+
+def planar(v):
+    """Texture coordinates of upright walls: metres across and down."""
+    return np.stack([v[:, 0] + v[:, 2], -v[:, 1]], axis=1)
+
+
+def glb(name, stage):
+    """Bytes of a stage, its solids put together by part."""
+    parts = {}
+    for part, (vertices, triangles) in stage:
+        verify(vertices, triangles, 0)
+        v, t = parts.get(part, (np.empty((0, 3)), np.empty((0, 3), int)))
+        parts[part] = np.concatenate([v, vertices]), np.concatenate([t, triangles + len(v)])
+    print(f"{name}: {sum(len(t) for _, t in parts.values())} triangles; parts {' '.join(parts)}")
+    return files.glb_bytes(name, [{"name": part, "positions": v, "triangles": t, "color": LOOKS[part][0], "uv": planar(v),
+                                   "metallic": 0.0, "roughness": LOOKS[part][1]} for part, (v, t) in parts.items()],
+                           generator="assets/stages/make.py")
+
+
+def make():
+    return {f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in (playroom, town, pitch)}
+
+
+if __name__ == "__main__":
+    generator.main(make, __file__, "Makes the stages.")
