@@ -1,5 +1,5 @@
 """Paints pirate.png for the outline in pirate.svg: it fills the box around it. Writes the poses that his rest shape mixes,
-and sculpts treasure.glb, a chest. `python3 make.py` writes them beside this file; `--check` compares instead."""
+and sculpts treasure.glb, an open chest. `python3 make.py` writes them beside this file; `--check` compares instead."""
 
 import pathlib
 import re
@@ -17,6 +17,7 @@ from picture import Picture
 ROWS = 720
 HIPS, ANKLES = 74, 100  # heights in the drawing
 STRIDE, STRETCH, LEAN_DEG = 0.2, 0.12, 20  # of the poses, m
+LID_DEG = 80  # by which the chest is open
 INK, HAT, GOLD, BONE = (26, 20, 22), (38, 34, 46), (222, 168, 60), (240, 234, 216)
 SKIN, ROSE, HAIR, WHITE, BLUE = (226, 164, 118), (214, 112, 86), (92, 46, 24), (250, 248, 242), (48, 104, 150)
 COAT, SHADE, SHIRT, BELT = (150, 32, 36), (112, 20, 28), (236, 228, 206), (70, 42, 26)
@@ -162,23 +163,38 @@ def poses():
     return {name: text.encode() for name, text in texts.items()}
 
 
-def chest(p):
-    body = sculpt.box(p, (0, 0.10, 0), (0.19, 0.10, 0.12), 0.01)
-    lid = np.maximum(np.hypot(p[:, 1] - 0.20, p[:, 2]) - 0.12, np.abs(p[:, 0]) - 0.19)
-    return np.minimum(body, np.maximum(lid, 0.195 - p[:, 1]))
+def opened(p):
+    """Points of the open chest in the frame of its closed lid: turned about the hinge behind."""
+    y, z = p[:, 1] - 0.2, p[:, 2] + 0.12
+    cos, sin = np.cos(np.radians(LID_DEG)), np.sin(np.radians(LID_DEG))
+    return np.stack([p[:, 0], 0.2 + cos * y - sin * z, -0.12 + cos * z + sin * y], axis=1)
+
+
+def trunk(p):
+    return sculpt.box(p, (0, 0.10, 0), (0.19, 0.10, 0.12), 0.01)
+
+
+def lid(p):
+    q = opened(p)
+    return np.maximum(np.maximum(np.hypot(q[:, 1] - 0.20, q[:, 2]) - 0.12, np.abs(q[:, 0]) - 0.19), 0.2 - q[:, 1])
 
 
 def fittings(p):
-    """Hoops around the chest, a rim and a lock."""
-    hoops = np.maximum(chest(p) - 0.008, np.abs(np.abs(p[:, 0]) - 0.125) - 0.022)
-    rim = np.maximum(chest(p) - 0.008, np.abs(p[:, 1] - 0.2) - 0.014)
-    return np.minimum(np.minimum(hoops, rim), sculpt.box(p, (0, 0.19, 0.125), (0.03, 0.035, 0.015), 0.006))
+    """Hoops around trunk and lid, rims, a lock, and the gold inside: a heap of coins."""
+    hoops = np.abs(np.abs(p[:, 0]) - 0.125) - 0.022
+    body = np.maximum(trunk(p) - 0.008, np.minimum(hoops, np.abs(p[:, 1] - 0.185) - 0.016))
+    top = np.maximum(lid(p) - 0.008, np.minimum(hoops, np.abs(opened(p)[:, 1] - 0.216) - 0.016))
+    heap = sculpt.ellipsoid(p, (0, 0.19, 0), (0.172, 0.085, 0.105))
+    heap = heap + 0.006 * np.sin(70 * p[:, 0] + 20 * p[:, 2]) * np.sin(80 * p[:, 2] + 3)
+    lock = sculpt.box(p, (0, 0.16, 0.125), (0.03, 0.035, 0.015), 0.006)
+    return np.min([body, top, heap, lock], axis=0)
 
 
 def treasure():
     parts = []
-    for name, shape, color in (("wood", chest, (0.26, 0.11, 0.04)), ("gold", fittings, (0.80, 0.55, 0.14))):
-        vertices, triangles = sculpt.surface(shape, (-0.24, -0.04, -0.18), (0.24, 0.38, 0.18), 0.0125)
+    for name, shape, color in (("wood", lambda p: np.minimum(trunk(p), lid(p)), (0.26, 0.11, 0.04)),
+                               ("gold", fittings, (0.80, 0.55, 0.14))):
+        vertices, triangles = sculpt.surface(shape, (-0.24, -0.04, -0.42), (0.24, 0.52, 0.18), 0.0125)
         parts.append({"name": name, "positions": vertices, "triangles": triangles, "color": color, "metallic": 0.0,
                       "roughness": 0.4})
     return files.glb_bytes("treasure", parts, generator="assets/pirate/make.py")

@@ -19,10 +19,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import files
 import generator
 import sculpt
+from grounds import BEND, shore_rise, SLOPE
 from surface import verify
 
-SLOPE = np.radians(10)
-BEND = 3.0  # radius of the bends at both ends of the slope (m)
 PLANKS = np.array([9.6, 7.2])  # metres of teacup/wood.png: along the grain, across it
 
 
@@ -85,10 +84,8 @@ def dunes():
 
 def shore():
     x = np.linspace(-4.0, 6.0, 251)
-    fade = np.clip((np.abs(x) - 0.3) / 0.4, 0, 1)
-    rise = 0.015 * np.sin(2 * np.pi * x / 1.4) + 0.010 * np.sin(2 * np.pi * x / 0.854 + 1)
     line, _ = section(2.0, 0.5, 0.15)
-    vertices, triangles = sweep(line, np.stack([x, fade**2 * (3 - 2 * fade) * rise], axis=1))
+    vertices, triangles = sweep(line, np.stack([x, shore_rise(x)], axis=1))
     return vertices[:, [2, 1, 0]] * (1, 1, -1), triangles
 
 

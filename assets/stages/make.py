@@ -15,9 +15,10 @@ import sys
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+sys.path += [str(HERE.parent), str(HERE.parent / "sets")]
 import files
 import generator
+from grounds import ramp_rise, shore_rise
 from surface import verify
 from solids import ball, box, moved, plate, prism, strip, tube, turned
 
@@ -29,7 +30,9 @@ LOOKS = {  # part -> (linear RGB, roughness)
     "stone": ((0.60, 0.60, 0.64), 0.8), "roof": ((0.50, 0.10, 0.04), 0.6), "plaster": ((0.74, 0.62, 0.44), 0.8),
     "road": ((0.55, 0.42, 0.26), 0.9), "hill": ((0.13, 0.33, 0.06), 1.0), "far_hill": ((0.22, 0.42, 0.26), 1.0),
     "leaf": ((0.04, 0.20, 0.03), 0.8), "trunk": ((0.20, 0.09, 0.03), 0.8), "cloud": ((0.85, 0.87, 0.90), 1.0),
-    "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
+    "sea": ((0.02, 0.22, 0.34), 0.25), "foam": ((0.55, 0.75, 0.80), 0.6),
+    "velvet": ((0.34, 0.012, 0.02), 0.7), "pool": ((0.90, 0.74, 0.50), 0.5), "star": ((0.80, 0.40, 0.03), 0.35),
+    "bulb": ((1.0, 0.8, 0.5), 0.3), "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
 }
 
 
@@ -129,15 +132,6 @@ def town():
     yield from cloud(-0.6, 3.4, -6.9, 0.35)
 
 
-SLOPE, BEND = np.radians(10), 3.0  # of sets/ramp.glb
-
-
-def ramp_height(x, z):
-    bend = BEND * np.sin(SLOPE)
-    return np.where(z < 0, 0, np.where(z < bend, BEND - np.sqrt(np.maximum(BEND**2 - z**2, 0)),
-                                       BEND * (1 - np.cos(SLOPE)) + (z - bend) * np.tan(SLOPE)))
-
-
 def spline(points, count):
     """A smooth line through points (#P by 2): Catmull and Rom."""
     p = np.asarray(points, float)
@@ -157,14 +151,14 @@ def cone(x, z):
 def pitch():
     way = spline([(1.2, -3.4), (0.4, -2.2), (-0.5, -1.0), (0, 0.4), (0, 1.5)], 12)
     for k in range(2, len(way) - 2, 3):
-        yield "white", strip(way[k:k + 2], 0.035, lambda x, z: ramp_height(x, z) + 0.0012, -0.01)
+        yield "white", strip(way[k:k + 2], 0.035, lambda x, z: ramp_rise(z) + 0.0012, -0.01)
     for x, z in ((1.15, -1.55), (-0.9, -2.2), (0.6, -0.2), (-1.35, -0.6)):
         yield from cone(x, z)
     # The goal: its line, a frame and a net.
     front, back, half, top = 1.55, 2.75, 1.0, 1.15
     line = np.stack([np.linspace(-1.3, 1.3, 3), np.full(3, front)], axis=1)
-    yield "white", strip(line, 0.04, lambda x, z: ramp_height(x, z) + 0.0012, -0.01)
-    ground, far = float(ramp_height(0, front)), float(ramp_height(0, back))
+    yield "white", strip(line, 0.04, lambda x, z: ramp_rise(z) + 0.0012, -0.01)
+    ground, far = float(ramp_rise(front)), float(ramp_rise(back))
     for x in (-half, half):
         yield "white", tube([(x, ground - 0.05, front), (x, ground + 0.5, front), (x, ground + top, front)], 0.045, 12)
         yield "white", tube([(x, ground + top, front), (x, (ground + far + top) / 2 + 0.25, (front + back) / 2 + 0.1),
@@ -184,11 +178,108 @@ def pitch():
     yield "leaf", skyline(x, 2.5 + 0.06 * np.sin(9 * x) + 0.05 * np.sin(23 * x), 0.2, 6.9, 0.5)
     for tx, tz in ((-2.6, 6.2), (2.7, 6.1), (-3.4, 3.6), (3.3, 3.4)):
         for part, solid in tree(tx, 0, 0.9):
-            yield part, moved(solid, (0, float(ramp_height(tx, tz)) - 0.02, tz))
+            yield part, moved(solid, (0, float(ramp_rise(tz)) - 0.02, tz))
     side = np.linspace(-8, 6.4, 70)
     for x0 in (-3.9, 3.9):
-        vertices, triangles = skyline(side, ramp_height(0, side) + 0.55 + 0.05 * np.sin(11 * side), -0.1, 0.15, 0.3)
+        vertices, triangles = skyline(side, ramp_rise(side) + 0.55 + 0.05 * np.sin(11 * side), -0.1, 0.15, 0.3)
         yield "leaf", (vertices[:, [2, 1, 0]] * (-1, 1, 1) + (x0, 0, 0), triangles)
+
+
+def palm(x, y, z, height, lean):
+    t = np.linspace(0, 1, 9)
+    line = np.stack([lean * t**1.8, height * t - 0.2 * (1 - t), 0 * t], axis=1) + (x, y, z)
+    yield "trunk", tube(line, 0.07 * (1 - 0.5 * t) * height / 1.6)
+    u = np.linspace(0, 1, 12)
+    droop = 0.35 * u - 0.75 * u**2
+    fat = 0.16 * np.sin(np.pi * u**0.7)
+    leaf = np.concatenate([np.stack([u, droop + fat], 1), np.stack([u, droop - 0.4 * fat], 1)[-2:0:-1]]) * 0.55 * height
+    for k in range(8):
+        solid = moved(prism(leaf, -0.03, 0.03), heading_deg=45 * k + 20)
+        yield "leaf", moved(solid, line[-1] + (0, 0.04 * (k % 2), 0))
+    for k in range(3):
+        yield "trunk", moved(ball(0.07 * height / 1.6), line[-1] + 0.1 * np.array([np.sin(2 * k), -0.6, np.cos(2 * k)]))
+
+
+def ship(x, y, z, scale):
+    hull = [(-1.0, 0.55), (-1.05, 0.75), (-0.55, 0.62), (0.55, 0.5), (1.1, 0.72), (1.25, 0.7), (0.8, 0), (-0.8, 0)]
+    yield "trunk", moved(prism(hull, -0.25, 0.25), (x, y - 0.08 * scale, z), scale=scale)
+    for mast, low, size in ((-0.5, 0.6, 0.8), (0.35, 0.5, 1.0)):
+        yield "trunk", moved(tube([(mast, 0.3, 0), (mast, 1, 0), (mast, low + 1.45 * size, 0)], 0.035), (x, y, z), scale=scale)
+        for a, b, half in ((0.15, 0.7, 0.42), (0.76, 1.2, 0.3)):
+            v = np.linspace(low + a * size, low + b * size, 9)
+            belly = 0.1 * np.sin(np.pi * (v - v[0]) / (v[-1] - v[0]))
+            sail = [*zip(mast - half * size + belly, v), *zip(mast + half * size + 1.6 * belly[::-1], v[::-1])]
+            yield "white", moved(prism(sail, 0.05, 0.07), (x, y, z), scale=scale)
+    yield "dark", moved(prism([(0.35, 1.98), (-0.05, 1.92), (0.02, 1.8), (-0.05, 1.68), (0.35, 1.74)], -0.01, 0.01),
+                        (x, y, z), scale=scale)
+
+
+def island():
+    sea = -0.14
+    yield "sea", box((-60, sea - 0.1, -60), (60, sea, -1.6))
+    for k in range(14):
+        yield "foam", box((-9 + 1.9 * k + np.sin(7 * k), sea, -3 - 1.2 * (k * 5 % 7)),
+                          (-8 + 1.9 * k + np.sin(7 * k), sea + 0.012, -2.94 - 1.2 * (k * 5 % 7)))
+    # The way to the treasure.
+    for k in range(8):
+        x = -0.42 + 0.24 * k
+        yield "red", strip([(x, 0.3), (x + 0.065, 0.3), (x + 0.13, 0.3)], 0.026, lambda x, z: shore_rise(x) + 0.004, -0.01)
+    for way in (-1, 1):
+        t = np.linspace(-0.15, 0.15, 7)
+        line = np.stack([1.66 + t, 0.3 + way * t], axis=1)
+        yield "red", strip(line, 0.034, lambda x, z: shore_rise(x) + 0.004 + 0.001 * way, -0.01)
+    for k, (x, z) in enumerate(((1.48, -0.12), (1.9, 0.08), (2.02, 0.12), (1.58, -0.22), (2.12, -0.02))):
+        yield "gold", moved(turned([(0, 0), (0.045, 0), (0.045, 0.014), (0, 0.014)]), (x, float(shore_rise(x)), z))
+    yield from palm(2.35, 0, -1.1, 1.9, -0.42)
+    yield from palm(2.75, 0, -1.35, 1.5, 0.3)
+    yield from palm(-1.35, 0, -1.3, 1.7, 0.35)
+    yield from ship(-1.2, sea, -9.0, 0.75)
+    x = np.linspace(-1.0, 1.0, 20)
+    yield "far_hill", skyline(4 * x + 5.0, sea + 0.55 * np.sqrt(np.maximum(1 - x**2, 0)) + 0.12 * np.sin(7 * x) * (1 - x**2) + 0.01,
+                              sea - 0.1, -20.0, 0.5)
+    for x, y, z, size in ((-0.7, 2.2, -14.0, 0.5), (2.6, 2.7, -14.0, 0.6), (4.8, 1.9, -14.0, 0.4)):
+        yield from cloud(x, y, z, size)
+
+
+def drape(x0, x1, z, low, high, fold=0.24, deep=0.07):
+    """A curtain in the plane z."""
+    x = np.linspace(x0, x1, int(round(14 * (x1 - x0) / fold)) + 1)
+    wave = z + deep * np.sin(2 * np.pi * x / fold) + 0.35 * deep * np.sin(2 * np.pi * x / (2.7 * fold))
+    return plate([*zip(x, wave + 0.01), *zip(x[::-1], wave[::-1] - 0.01)], low, high)
+
+
+def star(x, z, radius, points=5):
+    turn = np.pi * np.arange(2 * points) / points
+    r = radius * np.where(np.arange(2 * points) % 2 == 0, 1, 0.42)
+    return np.stack([x + r * np.sin(turn), z + r * np.cos(turn)], axis=1)
+
+
+def theatre():
+    yield "velvet", drape(-4.5, 4.5, -1.9, 0.0, 4.0)
+    for side in (-1, 1):
+        yield "velvet", drape(min(1.75 * side, 3.2 * side), max(1.75 * side, 3.2 * side), -1.15, 0.0, 4.0, 0.2, 0.06)
+    x = np.linspace(-3.2, 3.2, 129)
+    bows = 0.16 * np.abs(np.sin(np.pi * x / 0.8))
+    valance = [(-3.2, 4.0), *zip(x, 1.86 - bows), (3.2, 4.0)]
+    yield "velvet", prism(valance, -1.08, -1.0)
+    hem = [*zip(x, 1.86 - bows - 0.05), *zip(x[::-1], 1.86 - bows[::-1] + 0.005)]
+    yield "gold", prism(hem, -1.09, -0.985)
+    # Where to stand: a pool of light, a star in it, and dots on the way.
+    turn = 2 * np.pi * np.arange(48) / 48
+    yield "pool", plate(np.stack([0.62 * np.sin(turn), 0.62 * np.cos(turn)], axis=1), -0.02, 0.0004)
+    yield "star", plate(star(0, 0, 0.46), -0.02, 0.0007)
+    for k in range(3):
+        yield "star", plate(np.stack([0.74 + 0.17 * k + 0.035 * np.sin(turn), 0.035 * np.cos(turn)], axis=1), -0.02, 0.0004)
+    for x in np.linspace(-2.6, 2.6, 14):
+        yield "bulb", moved(ball(0.045, 7, 12), (x, 0.03, -0.92))
+    # A conjurer's hat and his wand.
+    hat = [(0, 0), (0.30, 0), (0.30, 0.02), (0.19, 0.03), (0.185, 0.10)]
+    yield "dark", moved(turned([*hat, (0, 0.10)], 40), (-1.0, 0, -0.35))
+    yield "red", moved(turned([(0, 0.095), (0.187, 0.095), (0.187, 0.16), (0, 0.16)], 40), (-1.0, 0, -0.35))
+    yield "dark", moved(turned([(0, 0.155), (0.185, 0.155), (0.20, 0.42), (0.19, 0.43), (0, 0.43)], 40), (-1.0, 0, -0.35))
+    for part, a, b in (("dark", 0.12, 0.88), ("white", 0, 0.125), ("white", 0.875, 1)):
+        ends = np.array([(-1.35, 0.03, 0.15), (-0.75, 0.03, 0.30)])
+        yield part, tube([ends[0] + t * (ends[1] - ends[0]) for t in (a, (a + b) / 2, b)], 0.022 if part == "dark" else 0.0225, 12)
 
 
 def planar(v):
@@ -210,7 +301,7 @@ def glb(name, stage):
 
 
 def make():
-    return {f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in (playroom, town, pitch)}
+    return {f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in (playroom, town, pitch, island, theatre)}
 
 
 if __name__ == "__main__":
