@@ -10,6 +10,7 @@ signboard.glb  for the letters: a board at z < 0 with the picture signboard.png,
 """
 
 import pathlib
+import re
 import sys
 
 import numpy as np
@@ -18,7 +19,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path += [str(HERE.parent), str(HERE.parent / "sets")]
 import files
 import generator
+import sculpt
 from grounds import ramp_rise, shore_rise
+from picture import Picture
 from surface import verify
 from solids import ball, box, moved, plate, prism, strip, tube, turned
 
@@ -32,7 +35,7 @@ LOOKS = {  # part -> (linear RGB, roughness)
     "leaf": ((0.04, 0.20, 0.03), 0.8), "trunk": ((0.20, 0.09, 0.03), 0.8), "cloud": ((0.85, 0.87, 0.90), 1.0),
     "sea": ((0.02, 0.22, 0.34), 0.25), "foam": ((0.55, 0.75, 0.80), 0.6),
     "velvet": ((0.34, 0.012, 0.02), 0.7), "pool": ((0.90, 0.74, 0.50), 0.5), "star": ((0.80, 0.40, 0.03), 0.35),
-    "bulb": ((1.0, 0.8, 0.5), 0.3), "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
+    "bulb": ((1.0, 0.8, 0.5), 0.3), "sign": ((0.84, 0.76, 0.62), 0.6), "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
 }
 
 
@@ -282,8 +285,70 @@ def theatre():
         yield part, tube([ends[0] + t * (ends[1] - ends[0]) for t in (a, (a + b) / 2, b)], 0.022 if part == "dark" else 0.0225, 12)
 
 
-def planar(v):
-    """Texture coordinates of upright walls: metres across and down."""
+# The board of the word: corners (x, y) of its picture, and the letters' middles with their colours (sRGB).
+SIGN = np.array([(-4.9, 0.0), (4.9, 1.4)])
+PLACES = [("S", -3.93, (214, 66, 52)), ("I", -3.11, (232, 148, 60)), ("G", -2.24, (226, 186, 70)), ("G", -1.11, (126, 176, 82)),
+          ("R", 0.06, (50, 164, 154)), ("A", 1.38, (72, 132, 206)), ("P", 2.48, (146, 92, 190)), ("H", 3.73, (222, 104, 158))]
+BOARD, GROOVE = (242, 232, 210), (156, 134, 108)
+
+
+def letter_loops(letter):
+    """Outline of a letter of letters.svg (a list of #P by 2), 1 m high, about the middle of its width, standing on y = 0."""
+    svg = (HERE.parent / "letters" / "letters.svg").read_text()
+    path = re.search(rf'id="{letter}" d="([^"]*)"', svg).group(1)
+    loops = [np.array(re.findall(r"-?[\d.]+", loop), float).reshape(-1, 2) * (0.01, -0.01) + (0, 1)
+             for loop in path.split("Z")[:-1]]
+    x = np.concatenate(loops)[:, 0]
+    return [loop - ((x.min() + x.max()) / 2, 0) for loop in loops]
+
+
+def sign_picture():
+    """Places for the letters, each cut into the board and in the colour of its letter."""
+    image = Picture((224, 1568), SIGN[0], SIGN[1], BOARD)
+    points = np.stack([image.x.ravel(), image.y.ravel()], axis=1)
+
+    def side(loop):
+        return np.sign(np.sum(loop[:, 0] * np.roll(loop[:, 1], -1) - loop[:, 1] * np.roll(loop[:, 0], -1)))
+
+    for letter, middle, color in PLACES:
+        near = np.abs(points[:, 0] - middle) < 0.9
+        loops = letter_loops(letter)
+        distance = np.full(len(points), 1.0)
+        inner = np.full(near.sum(), 1.0)
+        for loop in loops:
+            d = sculpt.polygon(points[near] - (middle, 0.02), loop)
+            inner = np.minimum(inner, d) if side(loop) == side(loops[0]) else np.maximum(inner, -d)
+        distance[near] = inner
+        distance = distance.reshape(image.x.shape)
+        image.lay(distance, GROOVE)
+        image.lay(distance + 0.025, 0.78 * np.array(BOARD) + 0.15 * np.array(color))
+    return image.indexed()
+
+
+def signboard():
+    wall, top = -1.6, 6.0
+    for k in range(-24, 24):
+        yield ("paper", "stripe")[k % 2], box((k / 2, 0, wall - 0.1), (k / 2 + 0.5, top, wall))
+    yield "skirting", box((-12, 0, wall), (12, 0.3, wall + 0.05))
+    (x0, y0), (x1, y1) = SIGN
+    yield "sign", box((x0, y0, -0.5), (x1, y1, -0.4))
+    for a, b in ((x0 - 0.12, x0), (x1, x1 + 0.12)):
+        yield "trunk", box((a, 0, -0.54), (b, y1 + 0.12, -0.36))
+    yield "trunk", box((x0, y1, -0.54), (x1, y1 + 0.12, -0.36))
+    # Bunting.
+    x = np.linspace(-6.5, 6.5, 27)
+    sag = 2.75 - 0.35 * np.abs(np.sin(np.pi * x / 4.333))
+    yield "white", tube(np.stack([x, sag, np.full(len(x), wall + 0.15)], axis=1), 0.012, 6)
+    for k in range(26):
+        u, v = (x[k] + x[k + 1]) / 2, (sag[k] + sag[k + 1]) / 2
+        yield ("red", "yellow", "teal", "blue")[k % 4], moved(prism([(-0.17, 0), (0.17, 0), (0, -0.36)], -0.006, 0.006),
+                                                             (u, v, wall + 0.15))
+
+
+def planar(part, v):
+    """Texture coordinates: those of the sign fill its picture, those of walls are metres across and down."""
+    if part == "sign":
+        return (v[:, :2] - SIGN[0]) / (SIGN[1] - SIGN[0]) * (1, -1) + (0, 1)
     return np.stack([v[:, 0] + v[:, 2], -v[:, 1]], axis=1)
 
 
@@ -295,13 +360,15 @@ def glb(name, stage):
         v, t = parts.get(part, (np.empty((0, 3)), np.empty((0, 3), int)))
         parts[part] = np.concatenate([v, vertices]), np.concatenate([t, triangles + len(v)])
     print(f"{name}: {sum(len(t) for _, t in parts.values())} triangles; parts {' '.join(parts)}")
-    return files.glb_bytes(name, [{"name": part, "positions": v, "triangles": t, "color": LOOKS[part][0], "uv": planar(v),
+    return files.glb_bytes(name, [{"name": part, "positions": v, "triangles": t, "color": LOOKS[part][0], "uv": planar(part, v),
                                    "metallic": 0.0, "roughness": LOOKS[part][1]} for part, (v, t) in parts.items()],
                            generator="assets/stages/make.py")
 
 
 def make():
-    return {f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in (playroom, town, pitch, island, theatre)}
+    stages = playroom, town, pitch, island, theatre, signboard
+    return {**{f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in stages},
+            "signboard.png": files.png_bytes(*sign_picture())}
 
 
 if __name__ == "__main__":
