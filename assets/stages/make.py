@@ -7,6 +7,10 @@ pitch.glb      for the sphere, in the place of sets/ramp.glb: a line along its w
 island.glb     for the pirate, in the place of sets/shore.glb: the sea, a ship, palms, and dashes to a cross
 theatre.glb    for Ace: a stage with curtains, and a star on the floor at the origin
 signboard.glb  for the letters: a board at z < 0 with the picture signboard.png, their places in the word
+kitchen.glb    for the cups and Cheesy: a wall of `tiles` at z = -3.6 and jars
+teapot.glb     a tea pot, 0.96 m high, its spout at +x
+cheese_dish.glb  a dish whose `cover` lies beside it, at -x
+course.glb     for figure 3: a wall, a ruler along x, its dashes 0.1 m long, and a flag at x = -1.8
 """
 
 import pathlib
@@ -35,7 +39,8 @@ LOOKS = {  # part -> (linear RGB, roughness)
     "leaf": ((0.04, 0.20, 0.03), 0.8), "trunk": ((0.20, 0.09, 0.03), 0.8), "cloud": ((0.85, 0.87, 0.90), 1.0),
     "sea": ((0.02, 0.22, 0.34), 0.25), "foam": ((0.55, 0.75, 0.80), 0.6),
     "velvet": ((0.34, 0.012, 0.02), 0.7), "pool": ((0.90, 0.74, 0.50), 0.5), "star": ((0.80, 0.40, 0.03), 0.35),
-    "bulb": ((1.0, 0.8, 0.5), 0.3), "sign": ((0.84, 0.76, 0.62), 0.6), "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
+    "bulb": ((1.0, 0.8, 0.5), 0.3), "tiles": ((0.62, 0.70, 0.68), 0.3), "china": ((0.82, 0.80, 0.74), 0.1),
+    "cover": ((0.60, 0.62, 0.64), 0.2), "sign": ((0.84, 0.76, 0.62), 0.6), "net": ((0.75, 0.76, 0.78), 0.6), "tile": ((0.78, 0.42, 0.05), 0.4),
 }
 
 
@@ -285,6 +290,62 @@ def theatre():
         yield part, tube([ends[0] + t * (ends[1] - ends[0]) for t in (a, (a + b) / 2, b)], 0.022 if part == "dark" else 0.0225, 12)
 
 
+def kitchen():
+    wall = -3.6
+    yield "tiles", box((-16, 0, wall - 0.1), (16, 5.5, wall))
+    yield "skirting", box((-16, 0, wall), (16, 0.12, wall + 0.06))
+    for x, part, size in ((-5.6, "red", 1.0), (-4.7, "yellow", 0.85), (-3.95, "teal", 0.7), (2.6, "teal", 0.9), (3.45, "red", 0.75)):
+        jar = [(0, 0), (0.33, 0), (0.37, 0.05), (0.37, 0.85), (0.33, 0.9), (0, 0.9)]
+        lid = [(0, 0.895), (0.35, 0.895), (0.35, 1.0), (0.08, 1.03), (0.08, 1.1), (0, 1.12)]
+        yield part, moved(turned(jar, 40), (x, 0, wall + 0.6), scale=size)
+        yield "white", moved(turned(lid, 40), (x, 0, wall + 0.6), scale=size)
+
+
+def teapot():
+    t = np.linspace(0, 1, 17)
+    belly = zip(0.32 + 0.28 * np.sin(np.pi * t)**0.8, 0.05 + 0.65 * t)
+    yield "china", turned([(0, 0), (0.30, 0), *belly, (0.24, 0.72), (0, 0.72)], 48)
+    yield "gold", turned([(0, 0.71), (0.33, 0.71), (0.33, 0.74), (0, 0.74)], 48)
+    yield "china", turned([(0, 0.735), (0.27, 0.735), (0.22, 0.82), (0.05, 0.87), (0, 0.875)], 48)
+    yield "gold", moved(ball(0.065), (0, 0.92, 0))
+    spout = np.stack([0.45 + 0.45 * t, 0.28 + 0.10 * t + 0.42 * t**2, 0 * t], axis=1)
+    yield "china", tube(spout, 0.15 - 0.09 * t, 16)
+    turn = np.linspace(-0.4 * np.pi, 0.42 * np.pi, 17)
+    yield "gold", tube(np.stack([-0.5 - 0.32 * np.cos(turn), 0.40 + 0.26 * np.sin(turn), 0 * turn], axis=1), 0.045, 12)
+    yield "blue", turned([(0, 0.33), (0.585, 0.33), (0.604, 0.40), (0.585, 0.45), (0, 0.45)], 48)
+
+
+def cheese_dish():
+    turn = 2 * np.pi * np.arange(64) / 64
+    for part, radius, top in (("blue", 0.80, 0.0004), ("white", 0.76, 0.0006), ("blue", 0.62, 0.0008), ("white", 0.60, 0.001)):
+        yield part, plate(np.stack([radius * np.sin(turn), radius * np.cos(turn)], axis=1), -0.02, top)
+    t = np.linspace(0, np.pi / 2, 13)
+    radius, high = 0.68, 0.35
+    outer = [(radius, 0), *zip(radius * np.cos(t), high + radius * np.sin(t))]
+    inner = [(0.96 * x, 0.96 * y) for x, y in outer]
+    cover = turned([*inner[::-1], *outer], 48)
+    knob = moved(ball(0.09), (0, high + radius + 0.07, 0))
+    tilt = np.radians(62)
+    lean = np.array([(np.cos(tilt), np.sin(tilt), 0), (-np.sin(tilt), np.cos(tilt), 0), (0, 0, 1)])
+    for part, (vertices, triangles) in (("cover", cover), ("gold", knob)):
+        yield part, (vertices @ lean + (-1.05, 0.60, -1.0), triangles)
+
+
+def course():
+    wall = -1.5
+    for k in range(-10, 8):
+        yield ("paper", "stripe")[k % 2], box((k / 2, 0, wall - 0.1), (k / 2 + 0.5, 3.5, wall))
+    yield "skirting", box((-5, 0, wall), (4, 0.18, wall + 0.05))
+    for k in range(24):
+        x = 0.5 - 0.1 * k
+        deep = 0.42 if k % 5 == 0 else 0.36
+        yield ("white", "dark")[k % 2], plate([(x - 0.1, 0.26), (x, 0.26), (x, deep), (x - 0.1, deep)], -0.02, 0.0006)
+    yield "white", moved(tube([(0, 0, 0), (0, 0.7, 0), (0, 1.4, 0)], 0.02), (-1.8, 0, -0.35))
+    yield "dark", moved(turned([(0, 0), (0.14, 0), (0.12, 0.03), (0, 0.04)]), (-1.8, 0, -0.35))
+    for part, square in checks((-1.78, 1.0), (-1.18, 1.4), (6, 4)):
+        yield part, prism(square, -0.355, -0.345)
+
+
 # The board of the word: corners (x, y) of its picture, and the letters' middles with their colours (sRGB).
 SIGN = np.array([(-4.9, 0.0), (4.9, 1.4)])
 PLACES = [("S", -3.93, (214, 66, 52)), ("I", -3.11, (232, 148, 60)), ("G", -2.24, (226, 186, 70)), ("G", -1.11, (126, 176, 82)),
@@ -366,7 +427,7 @@ def glb(name, stage):
 
 
 def make():
-    stages = playroom, town, pitch, island, theatre, signboard
+    stages = playroom, town, pitch, island, theatre, signboard, kitchen, teapot, cheese_dish, course
     return {**{f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in stages},
             "signboard.png": files.png_bytes(*sign_picture())}
 
