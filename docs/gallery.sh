@@ -26,9 +26,9 @@ for scene in "$@"; do
         cp "$frame" "$sheet/$row.$(basename "$frame")"
       done
     done
-    "$vivify" sheet "$sheet" --columns 6 --count 24 --width 1000 -q -o docs/images/figure3.png
+    "$vivify" sheet "$sheet" --columns 6 --count 24 --width 840 -q -o docs/images/figure3.png
   else
     render "$scene"
-    "$vivify" sheet "out/gallery/$scene" --columns 3 --width 780 -q -o "docs/images/$scene.png"
+    "$vivify" sheet "out/gallery/$scene" --columns 3 --width 750 -q -o "docs/images/$scene.png"
   fi
 done
