@@ -37,7 +37,7 @@ Schema example_schema() {
                   "the surface of the body with its vertices moved; for others a PLY with the "
                   "vertices of the simulation mesh in their order, as `vivify pose` writes it."))
       .field("pose", path("Pose file (see `vivify pose`), solved for the simulation mesh when it is needed."))
-      .field("name", string("Name in messages. Left out: that of the file."))
+      .field("name", string("Name in messages and for `pose`. Left out: that of the file, without its ending."))
       .field("group", string("Examples of one group share a hull: their weights are kept from being negative "
                              "and from summing to more than 1.")
                           .initially(""));

@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "pipeline/body_settings.h"
 #include "pipeline/collider_settings.h"
+#include "pipeline/example_pose.h"
 #include "pipeline/friction_settings.h"
 #include "pipeline/looks.h"
 #include "pipeline/placement.h"
@@ -20,6 +21,8 @@
 #include "render/lights/light.h"
 #include "render/scene.h"
 #include "sim/control/behavior.h"
+#include "sim/control/controllers/pose.h"
+#include "sim/control/controllers/turn.h"
 #include "sim/control/course.h"
 #include "sim/elastic/models.h"
 
@@ -190,8 +193,13 @@ class SemanticCheck {
         fail(forces, where + "." + outside + " does not fit: physics = static has no forces from outside",
              "make the physics dynamic, or give poses");
       }
+      std::vector<std::string> examples;
+      for (const Value& example : examples_of(bodies[i])) examples.push_back(example_name(example));
       for (const auto& [part, settings] : behaviors_of(bodies[i])) {
-        sim::check_course(settings, where + "." + part, is_planar(body_kind(bodies[i])), errors_);
+        const bool planar = is_planar(body_kind(bodies[i]));
+        sim::check_course(settings, where + "." + part, planar, errors_);
+        sim::check_turn(settings, where + "." + part, planar, errors_);
+        sim::check_example(settings, where + "." + part, examples, errors_);
         attempt(settings, [&] {
           for (const Value& other : sim::looked_at(settings)) body_exists(other, where + "." + part);
         });

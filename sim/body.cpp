@@ -175,8 +175,10 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   handles_ = Handles(input.handles, model_.mesh.V, model_.weight / model_.height);
   const int d = model_.dimension();
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);
-  const ControlledBody controlled{model_.mass,           rest_,      model_.height,
-                                  -settings.gravity.y(), settings.h, model_.rest->parameters()};
+  for (const ExamplePose& example : input.examples) examples_.push_back(example.name);
+  const ControlledBody controlled{
+      model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h, model_.rest->parameters(),
+      examples_};
   controller_ = input.behavior.items().empty() ? make_controller(controlled, input.controller)
                                                : make_script(controlled, input.behavior);
   const auto keyed = controller_->rest_parameters(0);
@@ -233,7 +235,7 @@ OtherBody Body::seen() const {
 Body::Wish Body::wish(long step, const Ground& ground, Others others) {
   Wish wish;
   const Eigen::VectorXd loads = vertex_loads(model_.contact_points, state_.contacts, model_.mass.size());
-  wish.goals = controller_->goals({state_.x, state_.v, ground.load, ground.velocity, others, loads});
+  wish.goals = controller_->goals({state_.x, state_.v, ground.load, ground.velocity, others, loads, p()});
   if (const auto p = controller_->rest_parameters(static_cast<double>(step) * settings_.h)) {
     wish.q = model_.rest->basis().transpose() * *p;
   } else if (controller_->passive()) {

@@ -121,7 +121,8 @@ class Body {
  private:
   WorldSettings settings_;
   BodyModel model_;
-  Eigen::VectorXd rest_;  // d #V, the shape as placed in the scene
+  Eigen::VectorXd rest_;               // d #V, the shape as placed in the scene
+  std::vector<std::string> examples_;  // names
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<SurfaceState> surface_;
   Handles handles_;

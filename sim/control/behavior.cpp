@@ -100,7 +100,7 @@ Schema behavior_schema() {
 
 std::vector<Value> looked_at(const Value& settings) {
   std::vector<Value> names;
-  for (const char* key : {"chase", "flee"}) {
+  for (const char* key : {"chase", "flee", "towards"}) {
     if (settings.has(key)) names.push_back(settings[key]);
   }
   if (const std::string other = waited_for(settings); !other.empty()) {

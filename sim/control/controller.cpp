@@ -6,21 +6,25 @@
 #include "sim/control/controllers/blend.h"
 #include "sim/control/controllers/goals.h"
 #include "sim/control/controllers/hop.h"
+#include "sim/control/controllers/pose.h"
 #include "sim/control/controllers/rest.h"
 #include "sim/control/controllers/roll.h"
+#include "sim/control/controllers/turn.h"
 #include "sim/control/controllers/wait.h"
 #include "sim/control/controllers/walk.h"
 
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 7> kControllers = {{
+constexpr std::array<ControllerEntry, 9> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
     {"roll", roll_controller_schema, make_roll_controller},
     {"walk", walk_controller_schema, make_walk_controller},
     {"wait", wait_controller_schema, make_wait_controller},
+    {"turn", turn_controller_schema, make_turn_controller},
     {"goals", goals_controller_schema, make_goals_controller},
+    {"pose", pose_controller_schema, make_pose_controller},
     {"blend", blend_controller_schema, make_blend_controller},
 }};
 

@@ -17,12 +17,13 @@ namespace vivify::sim {
 
 // What a controller knows of its body, fixed for the run.
 struct ControlledBody {
-  const Eigen::VectorXd& mass;  // #V, kg
-  const Eigen::VectorXd& rest;  // d #V, m, as placed in the scene
-  double height;                // of the body at rest, m
-  double gravity;               // downwards, m/s²
-  double h;                     // step size, s
-  int parameters = 0;           // p of its rest space
+  const Eigen::VectorXd& mass;                 // #V, kg
+  const Eigen::VectorXd& rest;                 // d #V, m, as placed in the scene
+  double height;                               // of the body at rest, m
+  double gravity;                              // downwards, m/s²
+  double h;                                    // step size, s
+  int parameters = 0;                          // p of its rest space
+  std::span<const std::string> examples = {};  // names of those whose weights p are
   int dimension() const { return static_cast<int>(rest.size() / mass.size()); }
 };
 
@@ -43,6 +44,7 @@ struct Observation {
   std::optional<Eigen::Vector3d> ground = {};
   Others others = {};
   Eigen::VectorXd loads = {};  // #V: the normal forces of colliders in the last step, shared out, N
+  Eigen::VectorXd p = {};      // of the rest shape
 };
 
 class Controller {

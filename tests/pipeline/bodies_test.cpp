@@ -452,7 +452,8 @@ TEST(Check, ReadsScripts) {
   const BodyScene scene(
       {kLetter, "model: {type: solid2d}",
        "behavior: [{hop: {to: [1, 0, 0], heading_deg: 90}}, {roll: {chase: nobody}},"
-       " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}, {wait: {until: soon}}]"});
+       " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}, {wait: {until: soon}},"
+       " {turn: {by_deg: 90}}, {pose: {example: bow}}]"});
   const Outcome outcome = vivify({"check", scene.file().string()});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[0].hop.heading_deg and .to are two courses"));
@@ -460,6 +461,8 @@ TEST(Check, ReadsScripts) {
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[2].wait = no_one: there is no such body"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[3].hop.heading_deg leads out of the plane"));
   EXPECT_THAT(outcome.err, HasSubstr("until = soon must be NAME.arrived"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[5].turn: a body of the plane cannot turn"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[6].pose.example = bow: the body has no such example"));
   const BodyScene both({kLetter, "model: {type: solid2d}", "controller: {type: hop}", "behavior: [wait:]"});
   EXPECT_THAT(vivify({"check", both.file().string()}).err,
               HasSubstr("bodies[0].controller and .behavior both say what the body does"));

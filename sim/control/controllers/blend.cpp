@@ -1,20 +1,13 @@
 #include "sim/control/controllers/blend.h"
 
-#include <algorithm>
-
-#include "sim/control/body_goals.h"
+#include "sim/control/keyed_weights.h"
 
 namespace vivify::sim {
 namespace {
 
-struct Key {
-  double t;  // s
-  Eigen::VectorXd weights;
-};
-
 class BlendController final : public Controller {
  public:
-  BlendController(std::vector<Key> keys, bool smooth, double h)
+  BlendController(std::vector<WeightKey> keys, bool smooth, double h)
       : keys_(std::move(keys)), smooth_(smooth), h_(h) {}
 
   std::vector<Goal> goals(const Observation&) override {
@@ -23,14 +16,7 @@ class BlendController final : public Controller {
   }
 
   std::optional<Eigen::VectorXd> rest_parameters(double t) const override {
-    const auto next =
-        std::upper_bound(keys_.begin(), keys_.end(), t, [](double at, const Key& key) { return at < key.t; });
-    if (next == keys_.begin()) return next->weights;
-    const Key& from = *(next - 1);
-    if (next == keys_.end()) return from.weights;
-    double share = (t - from.t) / (next->t - from.t);
-    if (smooth_) share = smooth_step(share);
-    return (1 - share) * from.weights + share * next->weights;
+    return weights_at(keys_, smooth_, t);
   }
 
   bool arrived() const override { return static_cast<double>(steps_) * h_ >= keys_.back().t; }
@@ -39,7 +25,7 @@ class BlendController final : public Controller {
   void restore(const Eigen::VectorXd& state) override { steps_ = static_cast<long>(state[0]); }
 
  private:
-  std::vector<Key> keys_;
+  std::vector<WeightKey> keys_;
   bool smooth_;
   double h_;
   long steps_ = 0;
@@ -77,9 +63,9 @@ Schema blend_controller_schema() {
 }
 
 std::unique_ptr<Controller> make_blend_controller(const ControlledBody& body, const Value& settings) {
-  std::vector<Key> keys;
+  std::vector<WeightKey> keys;
   for (const Value& item : settings["keys"].items()) {
-    Key key = {item["t"].as_number(), item["weights"].as_vector()};
+    WeightKey key = {item["t"].as_number(), item["weights"].as_vector()};
     if (!keys.empty() && !(key.t > keys.back().t)) fail(item, "controller.keys must be in the order of time");
     if (key.weights.size() != body.parameters) {
       throw Error(ErrorKind::usage,
