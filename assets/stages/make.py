@@ -5,6 +5,7 @@ playroom.glb   for the cross: a wall at z = -2.6 with a corner at x = 7, toys al
 town.glb       for the castles: a town wall which begins at x = 0 and goes on to +x, roofs behind it, hills and trees, a road
 pitch.glb      for the sphere, in the place of sets/ramp.glb: a line along its way, cones at it, and a goal on the slope
 island.glb     for the pirate, in the place of sets/shore.glb: the sea, a ship, palms, and dashes to a cross
+park.glb       for the race on sets/track.glb: trees, and hills at its end
 theatre.glb    for Ace: a stage with curtains, and a star on the floor at the origin
 signboard.glb  for the letters: a board at z < 0 with the picture signboard.png, their places in the word
 kitchen.glb    for the cups and Cheesy: a wall of `tiles` at z = -3.6 and jars
@@ -249,6 +250,14 @@ def island():
         yield from cloud(x, y, z, size)
 
 
+def park():
+    x = np.linspace(-16, 16, 90)
+    yield "hill", skyline(x, 1.2 + 0.5 * np.sin(0.6 * x + 2) + 0.15 * np.sin(1.9 * x), -0.5, -10.6, 0.3)
+    yield "far_hill", skyline(x, 2.3 + 0.7 * np.sin(0.4 * x + 0.5) + 0.2 * np.sin(1.1 * x), -0.5, -11.4, 0.3)
+    for tx, tz, size in ((-4.6, -7.5, 1.1), (-2.6, -9.2, 0.9), (2.9, -7.0, 1.2), (4.6, -8.6, 1.0), (5.4, -4.6, 1.3), (-6.5, -5.5, 1.2)):
+        yield from tree(tx, tz, size)
+
+
 def drape(x0, x1, z, low, high, fold=0.24, deep=0.07):
     """A curtain in the plane z."""
     x = np.linspace(x0, x1, int(round(14 * (x1 - x0) / fold)) + 1)
@@ -427,7 +436,7 @@ def glb(name, stage):
 
 
 def make():
-    stages = playroom, town, pitch, island, theatre, signboard, kitchen, teapot, cheese_dish, course
+    stages = park, playroom, town, pitch, island, theatre, signboard, kitchen, teapot, cheese_dish, course
     return {**{f"{stage.__name__}.glb": glb(stage.__name__, stage()) for stage in stages},
             "signboard.png": files.png_bytes(*sign_picture())}
 
