@@ -4,6 +4,7 @@
 
 #include "common/registry.h"
 #include "sim/control/controllers/blend.h"
+#include "sim/control/controllers/crawl.h"
 #include "sim/control/controllers/goals.h"
 #include "sim/control/controllers/hop.h"
 #include "sim/control/controllers/pose.h"
@@ -16,11 +17,12 @@
 namespace vivify::sim {
 namespace {
 
-constexpr std::array<ControllerEntry, 9> kControllers = {{
+constexpr std::array<ControllerEntry, 10> kControllers = {{
     {"rest", rest_controller_schema, make_rest_controller},
     {"hop", hop_controller_schema, make_hop_controller},
     {"roll", roll_controller_schema, make_roll_controller},
     {"walk", walk_controller_schema, make_walk_controller},
+    {"crawl", crawl_controller_schema, make_crawl_controller},
     {"wait", wait_controller_schema, make_wait_controller},
     {"turn", turn_controller_schema, make_turn_controller},
     {"goals", goals_controller_schema, make_goals_controller},

@@ -21,19 +21,21 @@ std::vector<Driven> driven_bodies() {
     const bool keyed = controller.name == "blend", poses = controller.name == "pose",
                goals = controller.name == "goals", walks = controller.name == "walk",
                heads = controller.name == "hop" || controller.name == "roll";
+    const bool crawls = controller.name == "crawl";
     const bool turns = controller.name == "turn";  // about the vertical
     for (const ModelEntry& model : elastic_models()) {
       if (turns && model.dimension == 2) continue;
       for (const NamedMesh& mesh : small_meshes(model.dimension, model.element_points)) {
         const std::string settings =
-            keyed   ? ", keys: [{t: 0, weights: [0, 0, 0]}, {t: 0.3, weights: [0.3, 0.1, 0.4]}]"
-            : poses ? ", example: bent"
-            : turns ? ", by_deg: 90"
-            : heads ? ", heading_deg: 90"
-            : goals ? ", goals: [{frequency: 4, keys: [{value: -0.05}]}]"
-            : walks ? ", heading_deg: 90, feet: [{min: [0, 0, 0], max: [0.4, 0.4, 1]}, {min: [0.6, 0, 0], "
-                      "max: [1, 0.4, 1]}]"
-                    : "";
+            keyed    ? ", keys: [{t: 0, weights: [0, 0, 0]}, {t: 0.3, weights: [0.3, 0.1, 0.4]}]"
+            : poses  ? ", example: bent"
+            : turns  ? ", by_deg: 90"
+            : crawls ? ", heading_deg: 90, segments: 2"
+            : heads  ? ", heading_deg: 90"
+            : goals  ? ", goals: [{frequency: 4, keys: [{value: -0.05}]}]"
+            : walks  ? ", heading_deg: 90, feet: [{min: [0, 0, 0], max: [0.4, 0.4, 1]}, {min: [0.6, 0, 0], "
+                       "max: [1, 0.4, 1]}]"
+                     : "";
         bodies.push_back({{model, rest_space_entry(keyed || poses ? "examples" : "cage"), mesh},
                           "{type: " + std::string(controller.name) + settings + "}"});
       }
