@@ -29,6 +29,6 @@ for scene in "$@"; do
     "$vivify" sheet "$sheet" --columns 6 --count 24 --width 840 -q -o docs/images/figure3.png
   else
     render "$scene"
-    "$vivify" sheet "out/gallery/$scene" --columns 3 --width 750 -q -o "docs/images/$scene.png"
+    "$vivify" sheet "out/gallery/$scene" --columns 3 --width 700 -q -o "docs/images/$scene.png"
   fi
 done
