@@ -218,7 +218,7 @@ Schema crawl_controller_schema() {
           number("Height of the hump as a share of the body's height.").at_least(0).at_most(1).initially(0.6))
       .field(
           "effort",
-          number("Weight of the goals against the cost of changing the rest shape.").above(0).initially(0.7));
+          number("Weight of the goals against the cost of changing the rest shape.").above(0).initially(0.4));
 }
 
 std::unique_ptr<Controller> make_crawl_controller(const ControlledBody& body, const Value& settings) {
