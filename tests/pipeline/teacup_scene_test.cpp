@@ -108,5 +108,31 @@ TEST_P(TeacupScene, HopsAlongItsHeadingAndObeysTheLaws) {
 
 INSTANTIATE_TEST_SUITE_P(Headings, TeacupScene, testing::Values(0, 90));
 
+// Angle about the vertical from one set of points to the other.
+double turned_deg(const RowMatrixXd& from, const RowMatrixXd& to) {
+  const RowMatrixXd a = from.rowwise() - from.colwise().mean(), b = to.rowwise() - to.colwise().mean();
+  const double along = a.col(0).dot(b.col(0)) + a.col(2).dot(b.col(2));
+  const double across = b.col(0).dot(a.col(2)) - b.col(2).dot(a.col(0));
+  return std::atan2(across, along) * 180 / M_PI;
+}
+
+TEST(TeacupTurn, LooksBehindItself) {
+  const testing_support::TemporaryFolder folder;
+  const std::filesystem::path out = folder / "out";
+  const testing_support::Outcome outcome =
+      testing_support::vivify({"simulate", VIVIFY_SOURCE_DIR "/configs/teacup.yaml", "-o", out.string(),
+                               "--progress=none", "-q", "--set", "bodies.cup.heading_deg=-60", "--set",
+                               "bodies.cup.controller={type: turn, per_hop_deg: 45, by_deg: 180}"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const RowMatrixXd end = Hdf5Reader(out / "sim/frames/0096.h5").matrix("/bodies/cup/x");
+  const double turned = turned_deg(Hdf5Reader(out / "mesh/cup.h5").matrix("/X0"), end);
+  EXPECT_NEAR(std::remainder(turned - 180, 360), 0, 5);
+  const Steps steps(out / "sim/steps.csv");
+  EXPECT_LE(steps.largest("tilt_deg"), 15);
+  EXPECT_LE(steps.largest("residual_rel"), 1e-8);
+  const std::size_t last = steps.size() - 1;
+  EXPECT_LE(std::hypot(steps("com_x_m", last), steps("com_z_m", last)), 0.25) << "on the spot";
+}
+
 }  // namespace
 }  // namespace vivify::pipeline
