@@ -46,6 +46,22 @@ struct Hopper {
     }
     return wanted;
   }
+  // Sum of the goals that are not of the centre of mass, as turning about the axes through it.
+  Eigen::Vector3d wanted_turning(const Vector& x, const std::vector<Goal>& all) const {
+    Eigen::Vector3d wanted = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d centre = centre_of_mass(mass, x);
+    for (const Goal& goal : all) {
+      if (is_centre_goal(goal)) continue;
+      Vector turning(x.size());
+      for (int axis = 0; axis < 3; ++axis) {
+        for (Eigen::Index i = 0; i < x.size(); i += 3)
+          turning.segment<3>(i) =
+              Eigen::Vector3d::Unit(axis).cross(Eigen::Vector3d(x.segment<3>(i)) - centre);
+        wanted[axis] += goal.a.dot(turning) * goal.sv;
+      }
+    }
+    return wanted;
+  }
   bool is_centre_goal(const Goal& goal) const {
     const Eigen::Vector3d direction = goal.a.head<3>() / mass[0] * mass.sum();
     return (goal.a - centre_of_mass_weights(mass, direction)).norm() < 1e-9 * goal.a.norm();
@@ -147,23 +163,38 @@ TEST(Hop, CrouchLowersTheCentreOfMass) {
 
 TEST(Hop, UprightGoalsTurnATiltedBodyBack) {
   Hopper hopper;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const Vector x = rigid(R, {0, 0, 0}, hopper.rest);
+  const Eigen::Vector3d wanted =
+      hopper.wanted_turning(x, hopper.controller->goals({x, Vector::Zero(x.size()), 1e9}));
+  EXPECT_LT(wanted.x(), -0.5);
+  EXPECT_NEAR(wanted.tail<2>().norm(), 0, 1e-6);
+}
+
+// The spin goals are linear in the rate: one of a tilted body gives their scale.
+TEST(Hop, FlightLeadsTheFeetAheadByAShareOfTheCapturePoint) {
+  const auto thrust = [](Hopper& hopper, const Vector& x, double speed) {
+    hopper.advance("thrust", true);
+    for (int step = 0; step < 5; ++step) hopper.goals(true);
+    Vector v = Vector::Zero(x.size());
+    for (Eigen::Index i = 2; i < v.size(); i += 3) v[i] = speed;
+    return hopper.wanted_turning(x, hopper.controller->goals({x, v, 1e9})).x();
+  };
+  Hopper upright;
   const double tilt = 0.2;
   const Eigen::Matrix3d R = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const Vector x = rigid(R, {0, 0, 0}, hopper.rest);
-  double about_x = 0, others = 0;
-  for (const Goal& goal : hopper.controller->goals({x, Vector::Zero(x.size()), 1e9})) {
-    if (hopper.is_centre_goal(goal)) continue;
-    Vector turning(x.size());
-    const Eigen::Vector3d centre = centre_of_mass(hopper.mass, x);
-    for (int axis = 0; axis < 3; ++axis) {
-      for (Eigen::Index i = 0; i < x.size(); i += 3) {
-        turning.segment<3>(i) = Eigen::Vector3d::Unit(axis).cross(Eigen::Vector3d(x.segment<3>(i)) - centre);
-      }
-      (axis == 0 ? about_x : others) += goal.a.dot(turning) * goal.sv;
-    }
-  }
-  EXPECT_LT(about_x, -0.5);
-  EXPECT_NEAR(others, 0, 1e-6);
+  const double per_rate = thrust(upright, rigid(R, {0, 0, 0}, upright.rest), 0) / (-8 * std::sin(tilt));
+  const auto rate = [&](double speed) {
+    Hopper hopper("{type: hop, height: 0.25, thrust_s: 0.15, feet_ahead: 0.5}");
+    return thrust(hopper, hopper.rest, speed) / per_rate;
+  };
+  const double flight = 2 * std::sqrt(2 * 0.25 / 9.81);
+  const double rise = centre_of_mass(upright.mass, upright.rest).y() - lowest_height(upright.rest, 3);
+  const double tangent = 0.5 * 0.4 / std::sqrt(9.81 * rise);
+  EXPECT_NEAR(rate(0.4), -std::sin(std::atan(tangent)) / flight, 1e-6);
+  EXPECT_NEAR(rate(-0.4), -rate(0.4), 1e-9);
+  EXPECT_NEAR(rate(0), 0, 1e-9);
+  EXPECT_NEAR(rate(10), -std::sin(std::atan(0.3)) / flight, 1e-6) << "at most so far";
 }
 
 TEST(Hop, RestoredControllersGoOnAlike) {

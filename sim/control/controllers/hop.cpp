@@ -20,12 +20,13 @@ constexpr double kSoftWeight = 0.3;      // of landing and crouching, relative t
 constexpr double kFall = 0.6;            // largest downward acceleration of a crouch, in g
 constexpr double kLongestCrouch = 2;     // of the asked duration
 constexpr double kLearning = 0.5;  // share of a missed take-off velocity that the next thrust asks for on top
-constexpr double kLargestLearnt = 0.5;  // of the wanted take-off velocity
-constexpr double kLineGain = 0.5;       // share of a sideways offset that one flight takes back
-constexpr double kLargestSteer = 0.3;   // sideways take-off speed, of the upward one
-constexpr double kLongestFlight = 3;    // s; a body that never lands again starts over
-constexpr double kTurnOnGround = 2;     // largest turning rate about the vertical while it stands, 1/s
-constexpr double kExtra = 0.2;          // of a hop: a rest of the way so short lengthens the others
+constexpr double kLargestLearnt = 0.5;    // of the wanted take-off velocity
+constexpr double kLineGain = 0.5;         // share of a sideways offset that one flight takes back
+constexpr double kLargestSteer = 0.3;     // sideways take-off speed, of the upward one
+constexpr double kLongestFlight = 3;      // s; a body that never lands again starts over
+constexpr double kTurnOnGround = 2;       // largest turning rate about the vertical while it stands, 1/s
+constexpr double kLargestLeanBack = 0.3;  // tangent of the angle at which it lands
+constexpr double kExtra = 0.2;            // of a hop: a rest of the way so short lengthens the others
 
 enum Phase { kCrouch, kThrust, kFlight, kLand };
 constexpr const char* kPhaseNames[] = {"crouch", "thrust", "flight", "land"};
@@ -44,6 +45,7 @@ class HopController final : public Controller {
         upright_(settings["upright"].as_number()),
         turn_(settings["turn_deg"].as_number() * std::numbers::pi / 180),
         sway_(settings["sway_deg"].as_number() * std::numbers::pi / 180),
+        feet_ahead_(settings["feet_ahead"].as_number()),
         face_heading_(settings["face_heading"].as_bool()),
         take_off_(std::sqrt(2 * body.gravity * settings["height"].as_number())),
         flight_s_(2 * take_off_ / body.gravity) {
@@ -79,6 +81,7 @@ class HopController final : public Controller {
       }
       case kThrust: {
         const double ramp = smooth_step(time_ / (0.5 * thrust_s_));
+        if (feet_ahead_ > 0) turn_to_landing(rate, ramp, R, now);
         if (turn_ != 0 && !planar()) rate.y() = ramp * turn_ / flight_s_;
         if (sway_ != 0) rate += (ramp * roll_rate(R) - rate.dot(way_.forward)) * way_.forward;
         add_centre(goals, 1, 0, 0, ramp * (wanted_take_off() + asked_on_top()));
@@ -136,6 +139,20 @@ class HopController final : public Controller {
   // Turning rate about the line of travel with which a flight leads over to the other side.
   double roll_rate(const Eigen::Matrix3d& R) const {
     return (lean() + std::asin(std::clamp((R * up()).dot(sideways()), -1.0, 1.0))) / flight_s_;
+  }
+
+  // The level part of `rate` becomes the one with which the flight leads to where the feet are ahead of the
+  // centre of mass, by a share of its capture point v √(z/g): they can take up its speed there (Raibert
+  // 1986).
+  void turn_to_landing(Eigen::Vector3d& rate, double ramp, const Eigen::Matrix3d& R,
+                       const Observation& now) const {
+    Eigen::Vector3d back = ground_ - centre_of_mass(body_.mass, now.v);
+    back.y() = 0;
+    back *= feet_ahead_ / std::sqrt(body_.gravity * rest_rise_);
+    if (back.norm() > kLargestLeanBack) back *= kLargestLeanBack / back.norm();
+    const double about_vertical = rate.y();
+    rate = ramp / flight_s_ * (R * up()).cross((head() + back).normalized());
+    if (!planar()) rate.y() = about_vertical;
   }
 
   // Velocity of the centre of mass over the ground at take-off: the asked height and pace, in equal hops to
@@ -248,7 +265,7 @@ class HopController final : public Controller {
   ControlledBody body_;
   Course course_;
   long count_;
-  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_, turn_, sway_;
+  double weight_, crouch_depth_, crouch_s_, thrust_s_, land_s_, upright_, turn_, sway_, feet_ahead_;
   bool face_heading_;
   double take_off_, flight_s_;
   double stride_ = 0;     // length of a hop, m
@@ -285,6 +302,13 @@ Schema hop_controller_schema() {
       .field(
           "sway_deg",
           number("How far the body leans to one side and the other, from hop to hop.").unit("°").initially(0))
+      .field(
+          "feet_ahead",
+          number("Share of the capture point by which the feet land ahead of the centre of mass, and take up "
+                 "its speed; at 0 the thrust turns the body upright instead. Helps where a base is short.")
+              .at_least(0)
+              .at_most(1)
+              .initially(0))
       .field("crouch_depth", number("Depth of the crouch as a share of the body's height.")
                                  .at_least(0)
                                  .at_most(0.5)
