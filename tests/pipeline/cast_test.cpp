@@ -23,10 +23,10 @@ TEST(Cast, AceHopsAlongOnItsCornersAndTurnsInTheAir) {
   EXPECT_LE(run.at("ace", "tilt_deg", 1), 5);
 }
 
-TEST(Cast, AceOfExamplesHopsAndTurnsAThirdRound) {
+TEST(Cast, AceOfExamplesBowsHopsAndTurnsHalfRound) {
   const SceneRun run("ace_examples.yaml");
   expect_played(run, "ace_examples");
-  EXPECT_LE(run.most("ace", "tilt_deg"), 15);
+  EXPECT_LE(run.most("ace", "tilt_deg"), 20) << "of the bow";
 }
 
 // The kinematic objectives are the same; what differs is the rest space.

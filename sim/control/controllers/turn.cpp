@@ -22,7 +22,7 @@ constexpr double kLeastTold = 5 * kDegree;  // asked of a hop that tells the gai
 constexpr std::array kWays = {"by_deg", "to_deg", "towards"};
 // Settings of `hop` that a turn has too.
 constexpr std::array kOfHop = {"height", "crouch_depth", "crouch_s", "thrust_s",
-                               "land_s", "effort",       "upright"};
+                               "land_s", "effort",       "upright",  "feet_ahead"};
 
 double nearest_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
