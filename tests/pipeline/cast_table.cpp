@@ -111,6 +111,7 @@ Role walking_letter(const char* name, double place, double width) {
   role.gait = Gait::walk;
   role.steps = 4;
   role.course = "behavior[" + std::to_string(kWalk) + "].walk";
+  role.besides.push_back("behavior[1].hop.to=[0.1, 0, 0]");
   return role;
 }
 
