@@ -51,6 +51,20 @@ def box(low, high):
     return prism([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], z0, z1)
 
 
+def capped(rings, first, last):
+    """Equal rings of points, one above the other, with a point that closes each end."""
+    around = len(rings[0])
+    vertices = np.concatenate([*rings, [first, last]])
+    k = np.arange(around)
+    k1, top = (k + 1) % around, (len(rings) - 1) * around
+    first_end, last_end = np.full(around, len(vertices) - 2), np.full(around, len(vertices) - 1)
+    triangles = [np.stack([first_end, k1, k], 1), np.stack([last_end, top + k, top + k1], 1)]
+    for a in range(0, top, around):
+        b = a + around
+        triangles += [np.stack([a + k, a + k1, b + k1], 1), np.stack([a + k, b + k1, b + k], 1)]
+    return vertices, np.concatenate(triangles)
+
+
 def turned(profile, around=24, squash=(1, 1)):
     """A profile (#P by 2: radius, y) turned about the y axis, its ends on the axis; `squash` shrinks x and z."""
     profile = np.asarray(profile, float)
@@ -59,15 +73,7 @@ def turned(profile, around=24, squash=(1, 1)):
     turn = 2 * np.pi * np.arange(around) / around
     rings = [np.stack([r * np.sin(turn) * squash[0], np.full(around, y), r * np.cos(turn) * squash[1]], 1)
              for r, y in profile[1:-1]]
-    vertices = np.concatenate([*rings, [(0, profile[0, 1], 0), (0, profile[-1, 1], 0)]])
-    k = np.arange(around)
-    k1, last = (k + 1) % around, (len(rings) - 1) * around
-    bottom, top = np.full(around, len(vertices) - 2), np.full(around, len(vertices) - 1)
-    triangles = [np.stack([bottom, k1, k], 1), np.stack([top, last + k, last + k1], 1)]
-    for a in range(0, last, around):
-        b = a + around
-        triangles += [np.stack([a + k, a + k1, b + k1], 1), np.stack([a + k, b + k1, b + k], 1)]
-    return vertices, np.concatenate(triangles)
+    return capped(rings, (0, profile[0, 1], 0), (0, profile[-1, 1], 0))
 
 
 def ball(radius, rings=9, around=24, squash=(1, 1, 1)):
@@ -91,15 +97,7 @@ def tube(points, radius, around=8):
         side /= np.linalg.norm(side)
         up = np.cross(way, side)
         rings.append(middle + r * (np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * up))
-    vertices = np.concatenate([*rings, p[:1], p[-1:]])
-    k = np.arange(around)
-    k1, last = (k + 1) % around, (len(p) - 1) * around
-    first_end, last_end = np.full(around, len(vertices) - 2), np.full(around, len(vertices) - 1)
-    triangles = [np.stack([first_end, k1, k], 1), np.stack([last_end, last + k, last + k1], 1)]
-    for a in range(0, last, around):
-        b = a + around
-        triangles += [np.stack([a + k, a + k1, b + k1], 1), np.stack([a + k, b + k1, b + k], 1)]
-    return vertices, np.concatenate(triangles)
+    return capped(rings, p[0], p[-1])
 
 
 def strip(line, half, top, low=-0.02):

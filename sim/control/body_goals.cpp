@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sim/control/rigid_motion.h"
 
@@ -35,6 +36,8 @@ double yaw_of(const Eigen::Matrix3d& R) {
   const Eigen::Vector3d front = R * Eigen::Vector3d::UnitZ();
   return std::atan2(front.x(), front.z());
 }
+
+double nearest_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
 double rest_rise(const ControlledBody& body) {
   return centre_of_mass(body.mass, body.rest).y() - lowest_height(body.rest, body.dimension());

@@ -35,6 +35,9 @@ Eigen::Vector3d upright_rate(const Eigen::Matrix3d& R, double frequency);
 // The angle about the vertical by which R turns what looks along +z, −π to π.
 double yaw_of(const Eigen::Matrix3d& R);
 
+// The same direction as an angle from −π to π.
+double nearest_turn(double angle);
+
 // How high the centre of mass is above the lowest vertex at rest, m.
 double rest_rise(const ControlledBody& body);
 

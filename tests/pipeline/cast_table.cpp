@@ -99,7 +99,7 @@ Role letter(const char* name, double place, double width, int last = 1) {
                .distance = 9,
                .flights = 8,
                .course = "behavior[" + std::to_string(last) + "].hop"};
-  const std::vector<std::string> before = {"behavior[0].wait.for_s=0.2", "behavior[1].hop.to=[0, 0, 0]"};
+  const std::vector<std::string> before = {"behavior[0].wait.for_s=0.2", "behavior[1].hop.to=[0.1, 0, 0]"};
   role.besides.assign(before.begin(), before.begin() + last);
   return role;
 }
@@ -111,7 +111,6 @@ Role walking_letter(const char* name, double place, double width) {
   role.gait = Gait::walk;
   role.steps = 4;
   role.course = "behavior[" + std::to_string(kWalk) + "].walk";
-  role.besides.push_back("behavior[1].hop.to=[0.1, 0, 0]");
   return role;
 }
 

@@ -33,8 +33,6 @@ Eigen::Vector3d level(const Eigen::Vector3d& v) { return {v.x(), 0, v.z()}; }
 // Of the course, seen from above: 0 is +z.
 double angle_of(const Eigen::Vector3d& v) { return std::atan2(v.x(), v.z()); }
 
-double nearest_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-
 class CrawlController final : public Controller {
  public:
   CrawlController(const ControlledBody& body, const Value& settings)

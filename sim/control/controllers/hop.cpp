@@ -179,8 +179,7 @@ class HopController final : public Controller {
   // Turns towards where the body shall look.
   double yaw_rate(const Eigen::Matrix3d& R) const {
     const double wanted = face_heading_ ? std::atan2(way_.forward.x(), way_.forward.z()) : yaw_;
-    return std::clamp(kUprightFrequency * std::remainder(wanted - yaw_of(R), 2 * std::numbers::pi),
-                      -kTurnOnGround, kTurnOnGround);
+    return std::clamp(kUprightFrequency * nearest_turn(wanted - yaw_of(R)), -kTurnOnGround, kTurnOnGround);
   }
 
   // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last

@@ -24,8 +24,6 @@ constexpr std::array kWays = {"by_deg", "to_deg", "towards"};
 constexpr std::array kOfHop = {"height", "crouch_depth", "crouch_s", "thrust_s",
                                "land_s", "effort",       "upright",  "feet_ahead"};
 
-double nearest_turn(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-
 class TurnController final : public Controller {
  public:
   TurnController(const ControlledBody& body, const Value& settings)

@@ -235,7 +235,7 @@ class WalkController final : public Controller {
       head -= part * std::tan(sway_) * home(swing_).normalized();
     }
     Eigen::Vector3d rate = kUprightFrequency * frequency_ * (orientation_ * up()).cross(head.normalized());
-    const double yaw = std::remainder(yaw_ - yaw_of(orientation_), 2 * std::numbers::pi);
+    const double yaw = nearest_turn(yaw_ - yaw_of(orientation_));
     rate.y() = std::clamp(kTurnFrequency * yaw, -kLargestTurningRate, kLargestTurningRate);
     return rate;
   }
@@ -266,7 +266,7 @@ class WalkController final : public Controller {
     way_ = course_.way(middle(), step_, now.others);
     if (face_heading_ && !planar()) {
       const double heading = std::atan2(way_.forward.x(), way_.forward.z());
-      yaw_ += std::clamp(std::remainder(heading - yaw_, 2 * std::numbers::pi), -kLargestTurn, kLargestTurn);
+      yaw_ += std::clamp(nearest_turn(heading - yaw_), -kLargestTurn, kLargestTurn);
     }
     double longest = 0;
     int next = -1;
