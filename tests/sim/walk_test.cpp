@@ -1,14 +1,16 @@
-// The walk controller: support polygons, its steps on a scripted body, restart. Scenes that walk are in
-// tests/pipeline/walk_scenes_test.cpp.
+// The walk controller: support polygons, its steps on a scripted body and on a solid of space, restart.
+// Scenes that walk are in tests/pipeline/walk_scenes_test.cpp.
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "bench/bodies.h"
 #include "sim/control/controller.h"
 #include "sim/control/support.h"
+#include "tests/pipeline/walk_steps.h"
 #include "tests/sim/fixtures.h"
 
 namespace vivify::sim {
@@ -73,6 +75,28 @@ TEST(Walk, ARestoredControllerGoesOnAlike) {
     phases.insert(a.controller->phase());
   }
   EXPECT_EQ(phases, (std::set<std::string>{"shift1", "swing1", "shift0"})) << "the one in front begins";
+}
+
+// Sideways, on two legs.
+TEST(Walk, ABodyOfSpaceRocksFromFootToFoot) {
+  SimMesh mesh = bench::cells(4, 4, 2, 0.25, [](int x, int y, int) { return y > 1 || x == 0 || x == 3; });
+  mesh.V.col(1).array() += 1e-3;
+  BodyInput input = bench::body_input(
+      "stool", mesh, bench::lively_model("solid3d", mesh, 200),
+      "{type: walk, heading_deg: 90, swing_s: 0.2, upright: 30, feet: [{min: [0, 0, 0], max: [0.3, 0, 1]},"
+      " {min: [0.7, 0, 0], max: [1, 0, 1]}]}");
+  input.cage_weights = bench::spread_weights(mesh.V, 24);
+  World world({input}, bench::ground(), {});
+  const Body& body = world.body(0);
+  std::vector<RowMatrixXd> frames = {rows(body.x())};
+  while (world.time() < 2.5) {
+    world.step();
+    EXPECT_LT(world.records().back().tilt_deg, 10) << "at " << world.time();
+    if (world.records().size() % 2 == 0) frames.push_back(rows(body.x()));
+  }
+  constexpr double kHeight = 1;
+  EXPECT_GE(testing_support::count_steps(frames, testing_support::foot_of(frames[0], true), kHeight, 1), 2);
+  EXPECT_GE(testing_support::count_steps(frames, testing_support::foot_of(frames[0], false), kHeight, 1), 2);
 }
 
 TEST(Walk, NeedsFeetThatHoldVertices) {

@@ -25,10 +25,14 @@ constexpr double kSwingFrequency = 5;        // k_p over k_d of a foot on its wa
 constexpr double kStanceFrequency = 1.5;     // of a foot that stays
 constexpr double kSinking = 0.1;             // speed of a foot that feels for the ground
 constexpr double kLargestLearnt = 0.5;       // speed that is asked for on top
+constexpr double kForgotten = 0.2;           // share of it that a body of space forgets in a step
 constexpr double kFootEffort = 2;            // weight of the goals of a foot
 constexpr double kFall = 0.3;                // largest wanted acceleration downwards, g
 constexpr double kRise = 0.5;                // and upwards
 constexpr double kCaptureGain = 4;           // push beyond the capture point, per distance that it is off
+constexpr double kShortestFall = 0.4;        // of a step: time in which a push leads the capture point
+constexpr double kCatch = 0.3;               // share of a miss of the capture point that a foot follows
+constexpr double kLongestCatch = 0.1;        // of the height
 constexpr double kEdge = 0.9;                // share of the support within which is pushed
 constexpr double kLiftEdge = 0.8;            // and with which a foot can do without the others
 constexpr double kInset = 0.5;               // share of the support above which the centre of mass is brought
@@ -49,6 +53,7 @@ struct Foot {
   Eigen::VectorXd mass;  // of its vertices, 0 elsewhere, kg
   Eigen::Vector3d home;  // its centre less that of the body at rest, horizontally, m
   double size;           // radius of gyration, m
+  RowMatrixXd arms;      // #vertices by 3: from its centre to its vertices at rest, m
 };
 
 Eigen::Vector3d level(const Eigen::Vector3d& v) { return {v.x(), 0, v.z()}; }
@@ -77,15 +82,20 @@ class WalkController final : public Controller {
     }
     const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), d);
     for (std::vector<int>& vertices : held_vertices(regions, V)) {
-      Foot foot{std::move(vertices), Eigen::VectorXd::Zero(body.mass.size()), {}, 0};
+      Foot foot{std::move(vertices), Eigen::VectorXd::Zero(body.mass.size()), {}, 0, {}};
       foot.mass(foot.vertices) = body.mass(foot.vertices);
-      foot.home = level(centre_of_mass(foot.mass, body.rest) - centre);
+      const Eigen::Vector3d middle = centre_of_mass(foot.mass, body.rest);
+      foot.home = level(middle - centre);
+      foot.arms.resize(static_cast<Eigen::Index>(foot.vertices.size()), 3);
+      for (std::size_t k = 0; k < foot.vertices.size(); ++k)
+        foot.arms.row(static_cast<Eigen::Index>(k)) = spatial_point(body.rest, foot.vertices[k], d) - middle;
       const Eigen::Matrix3d inertia = inertia_tensor(foot.mass, body.rest);
       foot.size = std::sqrt((d == 2 ? inertia(2, 2) : inertia.trace() / 3) / foot.mass.sum());
       feet_.push_back(std::move(foot));
     }
     held_.resize(feet_.size());
     loaded_.resize(feet_.size());
+    lowest_.resize(feet_.size());
   }
 
   std::vector<Goal> goals(const Observation& now) override {
@@ -99,6 +109,7 @@ class WalkController final : public Controller {
       // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
       // step fell short.
       const double largest = kLargestLearnt * speed_;
+      if (!planar()) learnt_ *= 1 - kForgotten;
       learnt_ = (learnt_ + asked_ - velocity_).cwiseMax(-largest).cwiseMin(largest);
       asked_ = velocity_ + body_.h * wanted_acceleration();
       for (int axis = 0; axis < 3; ++axis) {
@@ -167,6 +178,7 @@ class WalkController final : public Controller {
       asked_ = velocity_;
       previous_ = count();
       way_.forward = Eigen::Vector3d::Zero();
+      if (!planar()) yaw_ = yaw_of(orientation_);
     }
     std::vector<Eigen::Vector3d> every, all, staying;
     double ground = 0, bearing = 0;
@@ -179,6 +191,7 @@ class WalkController final : public Controller {
         if (now.loads.size() > 0) load += now.loads[v];
       }
       every.insert(every.end(), points.begin(), points.end());
+      lowest_[i] = lowest;
       loaded_[i] = stands(body_, load);
       if (loaded_[i]) {
         all.insert(all.end(), points.begin(), points.end());
@@ -189,7 +202,7 @@ class WalkController final : public Controller {
       staying.insert(staying.end(), points.begin(), points.end());
     }
     if (bearing > 0) ground_ = ground / bearing;
-    all_ = Support(all.empty() ? staying : all);
+    all_ = Support(!planar() ? every : all.empty() ? staying : all);
     staying_ = Support(staying);
     amid_ = Support(every).middle();
     const double rise = std::max(centre_.y() - ground_, 0.1 * body_.height);
@@ -215,7 +228,39 @@ class WalkController final : public Controller {
   Eigen::Vector3d miss() const {
     return capture_point() - (phase_ == kStand ? all_.middle() : staying_.nearest(amid_, kInset));
   }
-  Eigen::Vector3d wanted_push() const { return capture_point() + kCaptureGain * miss(); }
+  Eigen::Vector3d wanted_push() const {
+    if (planar()) return capture_point() + kCaptureGain * miss();
+    return capture_point() + (capture_point() - aim()) / (growth(time_left()) - 1);
+  }
+
+  // A body of space rocks from foot to foot: its feet may be lines on which it cannot stand. Pushed at the
+  // middle s of the feet that stay, the capture point falls from beside s to beside the place l where the
+  // other foot lands: ξ − s grows from (l − s) / (1 + e) to e (l − s) / (1 + e), e = exp(ω T), and there the
+  // next step begins with the like.
+  Eigen::Vector3d aim() const {
+    if (phase_ == kStand) return all_.middle();
+    const double e = growth(swing_s_);
+    return staying_.middle() + (phase_ == kSwing ? e : 1) / (1 + e) * (landing() - staying_.middle());
+  }
+  Eigen::Vector3d landing() const { return level(phase_ == kSwing ? to_ : target(swing_)); }
+  double growth(double duration) const { return std::exp(pendulum_ * duration); }
+  // To lead the capture point to its aim.
+  double time_left() const {
+    return phase_ == kSwing ? std::max(swing_s_ - time_, kShortestFall * swing_s_) : swing_s_;
+  }
+
+  // Where the capture point is when the foot that steps has landed.
+  Eigen::Vector3d falls_to() const {
+    const Eigen::Vector3d push = staying_.nearest(wanted_push(), kEdge);
+    return push + growth(time_left()) * (capture_point() - push);
+  }
+
+  // Whether the foot that steps will be there in time.
+  bool can_step() const {
+    const Eigen::Vector3d push = wanted_push();
+    if (planar()) return staying_.nearest(push, kLiftEdge) == push;
+    return (falls_to() - landing()).norm() < (staying_.middle() - landing()).norm();
+  }
 
   // One that the feet on the ground can give without turning the body or leaving the ground.
   Eigen::Vector3d wanted_acceleration() const {
@@ -299,15 +344,14 @@ class WalkController final : public Controller {
         if (stands(body_, now.load)) choose(now);
         break;
       case kShift: {
-        const Eigen::Vector3d push = wanted_push();
-        if (!staying_stand() || staying_.nearest(push, kLiftEdge) != push) break;
+        if (!staying_stand() || !can_step()) break;
         from_ = place(swing_, now.x);
         to_ = target(swing_);
         enter(kSwing);
         break;
       }
       case kSwing: {
-        if (falling().norm() > kLargestFall * body_.height)
+        if (planar() && falling().norm() > kLargestFall * body_.height)
           time_ = std::max(time_, swing_s_);  // down at once
         const bool early = time_<kEarliestLanding * swing_s_, late = time_> kLatestLanding * swing_s_;
         if (early || !(loaded_[swing_] || late)) break;
@@ -321,11 +365,19 @@ class WalkController final : public Controller {
     }
   }
 
+  // How much further a foot steps to catch a fall.
+  Eigen::Vector3d catching() const {
+    const Eigen::Vector3d step = kCatch * level(falls_to() - aim());
+    const double most = kLongestCatch * body_.height;
+    return step.norm() > most ? most * step.normalized() : step;
+  }
+
   // Where a foot on its way shall be, and how fast it shall go.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> swing_path() const {
     constexpr double pi = std::numbers::pi;
     const double t = time_ / swing_s_, part = std::min(t, 1.0), sinking = kSinking * speed_;
-    const Eigen::Vector3d way = level(to_ - from_);
+    Eigen::Vector3d way = level(to_ - from_);
+    if (!planar()) way += catching();
     Eigen::Vector3d at = from_ + smooth_step(part) * way;
     Eigen::Vector3d rate = 6 * part * (1 - part) / swing_s_ * way;
     at.y() += lift_ * std::sin(pi * part) - sinking * std::max(0.0, time_ - swing_s_);
@@ -342,6 +394,11 @@ class WalkController final : public Controller {
     if (swings) std::tie(at, rate) = swing_path();
     const double kd = std::sqrt(kFootEffort * body_.mass.sum());
     const double kp = (swings ? kSwingFrequency : kStanceFrequency) * frequency_ * kd;
+    if (!planar()) {
+      if (!swings && loaded_[i]) at.y() = lowest_[i] - foot.arms.col(1).minCoeff();
+      add_sole(goals, foot, kp, kd, at, rate);
+      return;
+    }
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     if (swings) {
       turn = upright_rate(best_rotation(foot.mass, body_.rest, x), kUprightFrequency * frequency_);
@@ -352,6 +409,23 @@ class WalkController final : public Controller {
           {centre_of_mass_weights(foot.mass, direction, body_.dimension()), kp, kd, at[axis], rate[axis]});
       if (planar() && axis < 2) continue;
       goals.push_back({spin_weights(foot.mass, x, direction), 0, foot.size * kd, 0, turn[axis]});
+    }
+  }
+
+  // Each vertex of the foot shall be where it belongs when the centre of the foot is at `at`: only a sole
+  // that is flat on the ground can push where the balance needs it.
+  void add_sole(std::vector<Goal>& goals, const Foot& foot, double kp, double kd, const Eigen::Vector3d& at,
+                const Eigen::Vector3d& rate) const {
+    const double share = 1 / std::sqrt(static_cast<double>(foot.vertices.size()));
+    for (std::size_t k = 0; k < foot.vertices.size(); ++k) {
+      const Eigen::Vector3d arm = foot.arms.row(static_cast<Eigen::Index>(k));
+      const Eigen::Vector3d place = at + Eigen::AngleAxisd(yaw_, up()) * arm;
+      Eigen::VectorXd vertex = Eigen::VectorXd::Zero(body_.mass.size());
+      vertex[foot.vertices[k]] = 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        goals.push_back({centre_of_mass_weights(vertex, Eigen::Vector3d::Unit(axis), 3), share * kp,
+                         share * kd, place[axis], rate[axis]});
+      }
     }
   }
 
@@ -380,20 +454,23 @@ class WalkController final : public Controller {
   // Of the present step.
   Eigen::Vector3d centre_, velocity_;
   Eigen::Matrix3d orientation_;
-  std::vector<bool> loaded_;  // feet that the ground bears
-  Support all_, staying_;     // under all feet that bear the body, and under all but the one that steps
-  Eigen::Vector3d amid_;      // all feet, m
-  double ground_ = 0;         // height under the feet that bear the body, m
-  double pendulum_ = 0;       // ω, 1/s
+  std::vector<bool> loaded_;    // feet that the ground bears
+  std::vector<double> lowest_;  // heights of the feet, m
+  Support all_;                 // under all feet that bear the body; of a body of space under all
+  Support staying_;             // under all but the one that steps
+  Eigen::Vector3d amid_;        // all feet, m
+  double ground_ = 0;           // height under the feet that bear the body, m
+  double pendulum_ = 0;         // ω, 1/s
 };
 
 }  // namespace
 
 Schema walk_controller_schema() {
   const char* corner = "in shares of the bounding box of the body at rest.";
-  return add_course(object("Walks along a course: the centre of mass goes above the feet that stay, another "
-                           "foot steps. At its end it stands."))
-      .field("feet", list("The feet, two or more.",
+  return add_course(
+             object("Walks along a course: the centre of mass goes above the feet that stay, another "
+                    "foot steps. A body of space rocks from foot to foot instead. At its end it stands."))
+      .field("feet", list("The feet, two or more; of a body of space their soles.",
                           object("A foot: the vertices in a box.")
                               .field("min", vector(std::string("Lower corner, ") + corner, 3).required())
                               .field("max", vector(std::string("Upper corner, ") + corner, 3).required()))

@@ -1,4 +1,5 @@
 // Walking on any number of feet: the centre of mass goes over the feet that stand, then another foot steps.
+// Bodies of space rock from foot to foot.
 #pragma once
 
 #include "sim/control/controller.h"
