@@ -22,7 +22,7 @@ struct Role {
   std::optional<double> heading_deg = {};     // that it travels along
   double distance = 0;                        // that it gets from its start, level, m
   int flights = 0;                            // of a tenth of a second
-  int steps = 0;                              // of a walker of the plane, since it hopped last
+  int steps = 0;                              // of a walker of the plane, between two flights
   // What else is missing, in words; empty when nothing is.
   std::string (*missing)(const SceneResult&) = nullptr;
   // Of one that can be sent elsewhere: the setting of its body that holds its course, and what else to set.
