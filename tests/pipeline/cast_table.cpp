@@ -46,7 +46,7 @@ std::string espresso_misses(const SceneResult& run) {
 }
 
 std::string ace_of_the_cage_misses(const SceneResult& run) {
-  const double before = turn_deg(run, "ace", 1, 96), turn = turn_deg(run, "ace", 96, 192);
+  const double before = turn_deg(run, "ace", 1, 84), turn = turn_deg(run, "ace", 84, 192);
   if (std::abs(before) > kMostAstray) return words("is turned by %.0f deg on the way", before);
   if (std::abs(std::abs(turn) - 180) > 30) return words("turns by %.0f deg in its trick", turn);
   return run.velocity(run.rows("ace").back()).norm() > kAtRest ? "does not stand at the end" : "";

@@ -50,7 +50,7 @@ constexpr const char* kPhaseNames[] = {"stand", "shift", "swing"};
 
 struct Foot {
   std::vector<int> vertices;
-  Eigen::VectorXd mass;  // of its vertices, 0 elsewhere, kg
+  Eigen::VectorXd mass;  // of its vertices, kg, or 1 for each of the sole of a body of space; 0 elsewhere
   Eigen::Vector3d home;  // its centre less that of the body at rest, horizontally, m
   double size;           // radius of gyration, m
   RowMatrixXd arms;      // #vertices by 3: from its centre to its vertices at rest, m
@@ -83,7 +83,11 @@ class WalkController final : public Controller {
     const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), d);
     for (std::vector<int>& vertices : held_vertices(regions, V)) {
       Foot foot{std::move(vertices), Eigen::VectorXd::Zero(body.mass.size()), {}, 0, {}};
-      foot.mass(foot.vertices) = body.mass(foot.vertices);
+      if (d == 2) {
+        foot.mass(foot.vertices) = body.mass(foot.vertices);
+      } else {
+        foot.mass(foot.vertices).setOnes();
+      }
       const Eigen::Vector3d middle = centre_of_mass(foot.mass, body.rest);
       foot.home = level(middle - centre);
       foot.arms.resize(static_cast<Eigen::Index>(foot.vertices.size()), 3);
@@ -234,13 +238,15 @@ class WalkController final : public Controller {
   }
 
   // A body of space rocks from foot to foot: its feet may be lines on which it cannot stand. Pushed at the
-  // middle s of the feet that stay, the capture point falls from beside s to beside the place l where the
-  // other foot lands: ξ − s grows from (l − s) / (1 + e) to e (l − s) / (1 + e), e = exp(ω T), and there the
-  // next step begins with the like.
+  // middle s of the feet that stay, the capture point falls from s + b to s + e b, e = exp(ω T), while the
+  // other foot goes to s + a + f: apart from the others by a, where it belongs, and onward by f. With b = a /
+  // (1 + e) + f / (e − 1) the next step, by f − a, begins as this one did.
   Eigen::Vector3d aim() const {
     if (phase_ == kStand) return all_.middle();
     const double e = growth(swing_s_);
-    return staying_.middle() + (phase_ == kSwing ? e : 1) / (1 + e) * (landing() - staying_.middle());
+    const Eigen::Vector3d s = staying_.middle(), belongs = level(middle(swing_) + home(swing_));
+    const Eigen::Vector3d b = (belongs - s) / (1 + e) + (landing() - belongs) / (e - 1);
+    return s + (phase_ == kSwing ? e : 1) * b;
   }
   Eigen::Vector3d landing() const { return level(phase_ == kSwing ? to_ : target(swing_)); }
   double growth(double duration) const { return std::exp(pendulum_ * duration); }
