@@ -111,8 +111,14 @@ Role walking_letter(const char* name, double place, double width) {
   return role;
 }
 
+// It rolls on for 20 of its diameters; the board may stop it then.
 Role grape(const char* name) {
-  return {.scene = "cheesy", .body = name, .gait = Gait::roll, .height = 0.25, .width = 0.22, .distance = 5};
+  return {.scene = "cheesy",
+          .body = name,
+          .gait = Gait::roll,
+          .height = 0.25,
+          .width = 0.22,
+          .distance = 20 * 0.22};
 }
 
 std::vector<Role> make_roles() {
@@ -154,6 +160,7 @@ std::vector<Role> make_roles() {
                               .gait = Gait::hop,
                               .height = 0.993,
                               .width = 1.14,
+                              .place = Eigen::Vector3d(3.9, 0, 0),
                               .distance = 6 * 0.993,
                               .flights = 10,
                               .course = "controller"},
@@ -164,7 +171,8 @@ std::vector<Role> make_roles() {
                               .width = 1.04,
                               .distance = 5 * 1.04,
                               .flights = 8,
-                              .course = "behavior[0].hop"},
+                              .course = "behavior[0].hop",
+                              .of_scene = {"colliders.board.position=[0, 0, -9]"}},
                              grape("grape1"),
                              grape("grape2"),
                              grape("grape3"),
@@ -257,6 +265,7 @@ std::vector<Errand> errands(const Role& role) {
     set("frames.duration_s=" + words("%g", seconds));
     set(of_body(role, "position=[0, 0.001, 0]"));
     for (const std::string& besides : role.besides) set(of_body(role, besides));
+    for (const std::string& besides : role.of_scene) set(besides);
     for (const char* other : {"heading_deg", "to", "path", "chase", "flee"})
       set(of_body(role, role.course + "." + other + "=null"));
     set(of_body(role, role.course + "." + course));
@@ -291,7 +300,7 @@ std::vector<Errand> errands(const Role& role) {
 
 namespace {
 
-// Towards `side`, the most between two flights: hops are no steps.
+// Towards `side`, while the body stays on the ground: hops are no steps.
 int steps_of(const SceneResult& run, const Role& role, int side) {
   const std::vector<std::size_t>& rows = run.rows(role.body);
   const std::vector<RowMatrixXd> frames = run.motion(role.body);
@@ -299,7 +308,7 @@ int steps_of(const SceneResult& run, const Role& role, int side) {
   const auto frame_of = [&](std::size_t i) {
     return frames.begin() + static_cast<std::ptrdiff_t>(i * frames.size() / rows.size());
   };
-  int most = 0;
+  int steps = 0;
   double in_air = 0;
   std::size_t landed = 0;
   for (std::size_t i = 0; i <= rows.size(); ++i) {
@@ -308,12 +317,11 @@ int steps_of(const SceneResult& run, const Role& role, int side) {
     if (in_air < kHop && i < rows.size()) continue;
     if (frame_of(i) > frame_of(landed)) {
       const std::vector<RowMatrixXd> between(frame_of(landed), frame_of(i));
-      most = std::max(most, count_steps(between, left, role.height, side) +
-                                count_steps(between, right, role.height, side));
+      steps += count_steps(between, left, role.height, side) + count_steps(between, right, role.height, side);
     }
     landed = i;
   }
-  return most;
+  return steps;
 }
 
 }  // namespace

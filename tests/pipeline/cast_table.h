@@ -22,12 +22,13 @@ struct Role {
   std::optional<double> heading_deg = {};     // that it travels along
   double distance = 0;                        // that it gets from its start, level, m
   int flights = 0;                            // of a tenth of a second
-  int steps = 0;                              // of a walker of the plane, between two flights
+  int steps = 0;                              // that it takes on the ground, towards where it goes
   // What else is missing, in words; empty when nothing is.
   std::string (*missing)(const SceneResult&) = nullptr;
-  // Of one that can be sent elsewhere: the setting of its body that holds its course, and what else to set.
+  // Of one that can be sent elsewhere: the setting of its body that holds its course, what else to set of it,
+  // and of the scene.
   std::string course = {};
-  std::vector<std::string> besides = {};
+  std::vector<std::string> besides = {}, of_scene = {};
 };
 
 // In the order of docs/gallery.md.

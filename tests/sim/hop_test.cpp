@@ -197,6 +197,26 @@ TEST(Hop, FlightLeadsTheFeetAheadByAShareOfTheCapturePoint) {
   EXPECT_NEAR(rate(10), -std::sin(std::atan(0.3)) / flight, 1e-6) << "at most so far";
 }
 
+TEST(Hop, GoesBackToItsPlaceWhenItIsMoved) {
+  Hopper hopper("{type: hop, to: [0, 0, 1]}");
+  const auto stand_at = [&](double z) {
+    const Vector x = rigid(Eigen::Matrix3d::Identity(), {0, 0, z}, hopper.rest);
+    return hopper.controller->goals({x, Vector::Zero(x.size()), hopper.mass.sum() * 9.81});
+  };
+  hopper.goals(true);
+  hopper.advance("thrust", true);
+  hopper.advance("flight", false);
+  for (int step = 0; step < 30; ++step) stand_at(1);
+  EXPECT_TRUE(hopper.controller->arrived());
+  for (int step = 0; step < 30; ++step) stand_at(1.1);
+  EXPECT_EQ(hopper.controller->phase(), "land") << "near enough";
+  for (int step = 0; step < 60 && hopper.controller->phase() != "thrust"; ++step) stand_at(1.6);
+  stand_at(1.6);
+  EXPECT_EQ(hopper.controller->phase(), "thrust");
+  EXPECT_LT(hopper.wanted_velocity(stand_at(1.6)).z(), -0.1);
+  EXPECT_TRUE(hopper.controller->arrived()) << "the next behaviour has begun";
+}
+
 TEST(Hop, RestoredControllersGoOnAlike) {
   Hopper a, b;
   for (int step = 0; step < 17; ++step) a.goals(true);

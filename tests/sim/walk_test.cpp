@@ -77,6 +77,18 @@ TEST(Walk, ARestoredControllerGoesOnAlike) {
   EXPECT_EQ(phases, (std::set<std::string>{"shift1", "swing1", "shift0"})) << "the one in front begins";
 }
 
+TEST(Walk, TakesNoSmallStepsWhereTheWayEnds) {
+  const std::string feet =
+      ", feet: [{min: [0, 0, 0], max: [0.3, 0, 1]}, {min: [0.7, 0, 0], max: [1, 0, 1]}]}";
+  const Shown near("{type: walk, to: [0.1, 0, 0]" + feet), far("{type: walk, to: [0.3, 0, 0]" + feet);
+  near.goals(*near.controller, 0);
+  EXPECT_EQ(near.controller->phase(), "stand");
+  EXPECT_TRUE(near.controller->arrived());
+  far.goals(*far.controller, 0);
+  EXPECT_EQ(far.controller->phase(), "shift1");
+  EXPECT_FALSE(far.controller->arrived());
+}
+
 // Sideways, on two legs.
 TEST(Walk, ABodyOfSpaceRocksFromFootToFoot) {
   SimMesh mesh = bench::cells(4, 4, 2, 0.25, [](int x, int y, int) { return y > 1 || x == 0 || x == 3; });

@@ -216,15 +216,19 @@ class HopController final : public Controller {
     time_ = 0;
     start_ = centre_of_mass(body_.mass, now.x) - carried_;
     start_rate_ = centre_of_mass(body_.mass, now.v).y() - ground_.y();
-    if (!arrived_) way_ = course_.way(start_, stride_, now.others);
+    // One that has arrived keeps its direction until it is moved away.
+    const Eigen::Vector3d forward = way_.forward;
+    way_ = course_.way(start_, stride_, now.others);
+    if (arrived_ && course_.ends(way_)) way_.forward = forward;
     // The ground may be anywhere: the centre stands above the lowest vertex as it does at rest.
     if (phase == kCrouch || phase == kLand)
       ground_height_ = lowest_height(now.x, body_.dimension()) + rest_rise_ - carried_.y();
   }
 
   void rest_or_go_on(const Observation& now) {
-    arrived_ = arrived_ || hops_ >= count_ || (hops_ > 0 && course_.ends(way_));
-    enter(arrived_ ? kLand : kCrouch, now);
+    const bool rests = hops_ >= count_ || (hops_ > 0 && course_.ends(way_));
+    arrived_ = arrived_ || rests;
+    enter(rests ? kLand : kCrouch, now);
   }
 
   void advance_phase(bool standing, const Observation& now) {

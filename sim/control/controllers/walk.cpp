@@ -38,8 +38,10 @@ constexpr double kLiftEdge = 0.8;            // and with which a foot can do wit
 constexpr double kInset = 0.5;               // share of the support above which the centre of mass is brought
 constexpr double kEarliestLanding = 0.6;     // share of a step after which its foot may have landed
 constexpr double kLatestLanding = 3;         // after which it is taken for landed
+constexpr double kLongestShift = 5;          // after which another foot steps
 constexpr double kLargestFall = 0.1;         // of the height: capture point beside the support
 constexpr double kShortest = 0.05;           // of the height: steps that are not worth taking
+constexpr double kShortestAtEnd = 0.15;      // where the way ends
 constexpr double kLineGain = 0.5;            // share of a sideways offset that a step takes back
 constexpr double kLargestTurn = 0.3;         // of a step, radians
 constexpr double kTurnFrequency = 4;         // wanted turning rate about the vertical per radian, 1/s
@@ -319,12 +321,13 @@ class WalkController final : public Controller {
       const double heading = std::atan2(way_.forward.x(), way_.forward.z());
       yaw_ += std::clamp(nearest_turn(heading - yaw_), -kLargestTurn, kLargestTurn);
     }
+    const double shortest = (course_.ends(way_) ? kShortestAtEnd : kShortest) * body_.height;
     double longest = 0;
     int next = -1;
     for (int i = 0; i < count(); ++i) {
       const double lag = level(target(i) - held_[i]).norm();
       const double early = kShortest * way_.forward.dot(home(i));
-      if (i == previous_ || lag < kShortest * body_.height || lag + early <= longest) continue;
+      if (i == previous_ || lag < shortest || lag + early <= longest) continue;
       longest = lag + early;
       next = i;
     }
@@ -336,6 +339,13 @@ class WalkController final : public Controller {
       swing_ = next;
       enter(kShift);
     }
+  }
+
+  // From where the feet are, with another foot than the last.
+  void go_on(const Observation& now) {
+    for (int i = 0; i < count(); ++i) held_[i] = place(i, now.x);
+    previous_ = swing_;
+    choose(now);
   }
 
   void enter(Phase phase) {
@@ -350,6 +360,10 @@ class WalkController final : public Controller {
         if (stands(body_, now.load)) choose(now);
         break;
       case kShift: {
+        if (time_ > kLongestShift * swing_s_) {  // it leans on the foot that shall step
+          go_on(now);
+          break;
+        }
         if (!staying_stand() || !can_step()) break;
         from_ = place(swing_, now.x);
         to_ = target(swing_);
@@ -361,11 +375,9 @@ class WalkController final : public Controller {
           time_ = std::max(time_, swing_s_);  // down at once
         const bool early = time_<kEarliestLanding * swing_s_, late = time_> kLatestLanding * swing_s_;
         if (early || !(loaded_[swing_] || late)) break;
-        for (int i = 0; i < count(); ++i) held_[i] = place(i, now.x);
-        previous_ = swing_;
         duration_ = since_step_;
         since_step_ = 0;
-        choose(now);
+        go_on(now);
         break;
       }
     }
