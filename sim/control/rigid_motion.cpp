@@ -50,6 +50,8 @@ Eigen::Matrix3d best_rotation(const Eigen::VectorXd& mass, const Eigen::VectorXd
     covariance +=
         mass[i] * (spatial_point(x, i, d) - centre) * (spatial_point(rest, i, d) - rest_centre).transpose();
   }
+  // What is in the plane stays there, lines and mirrored shapes too: no smallest singular value is beside it.
+  if (d == 2) covariance(2, 2) = 2 * covariance.cwiseAbs().maxCoeff();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();
   signs[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;

@@ -216,7 +216,7 @@ std::vector<Role> make_roles() {
                               .in_plane = true,
                               .place = Eigen::Vector3d(0.9, 0, 0),
                               .steps = 8,
-                              .course = "controller"},
+                              .course = "behavior[0].walk"},
                              {.scene = "pirate",
                               .body = "pirate",
                               .gait = Gait::walk,

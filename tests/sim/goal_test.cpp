@@ -136,5 +136,21 @@ TEST(RigidMotion, BestRotationIsARotationAndTheBestEvenForReflections) {
   }
 }
 
+TEST(RigidMotion, WhatIsInThePlaneTurnsInIt) {
+  const double angle = 2.5;
+  const Eigen::Rotation2Dd turn(angle);
+  const Vector mass = Vector::LinSpaced(4, 1, 2);
+  const RowMatrixXd line{{0, 0}, {0.1, 0}, {0.3, 0}, {0.4, 0}}, shape{{0, 0}, {1, 0}, {1, 0.7}, {0, 0.4}};
+  for (const RowMatrixXd& rest : {line, shape}) {
+    const RowMatrixXd turned = rest * turn.toRotationMatrix().transpose();
+    const Eigen::Matrix3d R = best_rotation(mass, flat(rest), flat(turned));
+    EXPECT_NEAR(R(0, 0), std::cos(angle), 1e-12);
+    EXPECT_NEAR(R(1, 0), std::sin(angle), 1e-12);
+    EXPECT_NEAR(R(2, 2), 1, 1e-12);
+  }
+  const RowMatrixXd mirrored = shape * Eigen::Vector2d(1, -1).asDiagonal();
+  EXPECT_NEAR(best_rotation(mass, flat(shape), flat(mirrored))(2, 2), 1, 1e-12);
+}
+
 }  // namespace
 }  // namespace vivify::sim

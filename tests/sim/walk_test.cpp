@@ -80,7 +80,8 @@ TEST(Walk, ARestoredControllerGoesOnAlike) {
 TEST(Walk, TakesNoSmallStepsWhereTheWayEnds) {
   const std::string feet =
       ", feet: [{min: [0, 0, 0], max: [0.3, 0, 1]}, {min: [0.7, 0, 0], max: [1, 0, 1]}]}";
-  const Shown near("{type: walk, to: [0.1, 0, 0]" + feet), far("{type: walk, to: [0.3, 0, 0]" + feet);
+  const Shown near("{type: walk, step: 0.5, to: [0.1, 0, 0]" + feet),
+      far("{type: walk, step: 0.5, to: [0.3, 0, 0]" + feet);
   near.goals(*near.controller, 0);
   EXPECT_EQ(near.controller->phase(), "stand");
   EXPECT_TRUE(near.controller->arrived());

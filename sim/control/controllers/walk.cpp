@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
-#include "common/matrix.h"
 #include "sim/control/body_goals.h"
 #include "sim/control/course.h"
+#include "sim/control/foot.h"
 #include "sim/control/rigid_motion.h"
-#include "sim/control/support.h"
+#include "sim/control/walking_balance.h"
 #include "sim/region.h"
 
 namespace vivify::sim {
@@ -25,38 +25,20 @@ constexpr double kSwingFrequency = 5;        // k_p over k_d of a foot on its wa
 constexpr double kStanceFrequency = 1.5;     // of a foot that stays
 constexpr double kSinking = 0.1;             // speed of a foot that feels for the ground
 constexpr double kLargestLearnt = 0.5;       // speed that is asked for on top
-constexpr double kForgotten = 0.2;           // share of it that a body of space forgets in a step
 constexpr double kFootEffort = 2;            // weight of the goals of a foot
 constexpr double kFall = 0.3;                // largest wanted acceleration downwards, g
 constexpr double kRise = 0.5;                // and upwards
-constexpr double kCaptureGain = 4;           // push beyond the capture point, per distance that it is off
-constexpr double kShortestFall = 0.4;        // of a step: time in which a push leads the capture point
-constexpr double kCatch = 0.3;               // share of a miss of the capture point that a foot follows
-constexpr double kLongestCatch = 0.1;        // of the height
-constexpr double kEdge = 0.9;                // share of the support within which is pushed
-constexpr double kLiftEdge = 0.8;            // and with which a foot can do without the others
-constexpr double kInset = 0.5;               // share of the support above which the centre of mass is brought
 constexpr double kEarliestLanding = 0.6;     // share of a step after which its foot may have landed
 constexpr double kLatestLanding = 3;         // after which it is taken for landed
 constexpr double kLongestShift = 5;          // after which another foot steps
-constexpr double kLargestFall = 0.1;         // of the height: capture point beside the support
 constexpr double kShortest = 0.05;           // of the height: steps that are not worth taking
-constexpr double kShortestAtEnd = 0.15;      // where the way ends
+constexpr double kShortestAtEnd = 0.25;      // of a whole one, where the way ends
 constexpr double kLineGain = 0.5;            // share of a sideways offset that a step takes back
 constexpr double kLargestTurn = 0.3;         // of a step, radians
 constexpr double kTurnFrequency = 4;         // wanted turning rate about the vertical per radian, 1/s
 constexpr double kLargestTurningRate = 1.5;  // 1/s
 
-enum Phase { kStand, kShift, kSwing };
-constexpr const char* kPhaseNames[] = {"stand", "shift", "swing"};
-
-struct Foot {
-  std::vector<int> vertices;
-  Eigen::VectorXd mass;  // of its vertices, kg, or 1 for each of the sole of a body of space; 0 elsewhere
-  Eigen::Vector3d home;  // its centre less that of the body at rest, horizontally, m
-  double size;           // radius of gyration, m
-  RowMatrixXd arms;      // #vertices by 3: from its centre to its vertices at rest, m
-};
+constexpr const char* kPhaseNames[] = {"stand", "shift", "swing"};  // by Stance::Phase
 
 Eigen::Vector3d level(const Eigen::Vector3d& v) { return {v.x(), 0, v.z()}; }
 
@@ -72,33 +54,18 @@ class WalkController final : public Controller {
         sway_(settings["sway_deg"].as_number() * std::numbers::pi / 180),
         weight_(settings["effort"].as_number()),
         upright_(settings["upright"].as_number()),
-        face_heading_(settings["face_heading"].as_bool()),
+        face_heading_(settings["face_heading"].as_bool() && body.dimension() == 3),
+        balance_(make_walking_balance(body.dimension() == 2)),
         frequency_(std::sqrt(body.gravity / body.height)),
         speed_(std::sqrt(body.gravity * body.height)) {
-    const Eigen::Vector3d centre = centre_of_mass(body.mass, body.rest);
-    const int d = body.dimension();
     rest_rise_ = rest_rise(body);
     std::vector<Region> regions;
     for (const Value& foot : settings["feet"].items()) {
       regions.push_back(region_between(foot, "feet[" + std::to_string(regions.size()) + "]", foot.where()));
     }
-    const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), d);
-    for (std::vector<int>& vertices : held_vertices(regions, V)) {
-      Foot foot{std::move(vertices), Eigen::VectorXd::Zero(body.mass.size()), {}, 0, {}};
-      if (d == 2) {
-        foot.mass(foot.vertices) = body.mass(foot.vertices);
-      } else {
-        foot.mass(foot.vertices).setOnes();
-      }
-      const Eigen::Vector3d middle = centre_of_mass(foot.mass, body.rest);
-      foot.home = level(middle - centre);
-      foot.arms.resize(static_cast<Eigen::Index>(foot.vertices.size()), 3);
-      for (std::size_t k = 0; k < foot.vertices.size(); ++k)
-        foot.arms.row(static_cast<Eigen::Index>(k)) = spatial_point(body.rest, foot.vertices[k], d) - middle;
-      const Eigen::Matrix3d inertia = inertia_tensor(foot.mass, body.rest);
-      foot.size = std::sqrt((d == 2 ? inertia(2, 2) : inertia.trace() / 3) / foot.mass.sum());
-      feet_.push_back(std::move(foot));
-    }
+    const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), body.dimension());
+    for (std::vector<int>& vertices : held_vertices(regions, V))
+      feet_.emplace_back(body, std::move(vertices));
     held_.resize(feet_.size());
     loaded_.resize(feet_.size());
     lowest_.resize(feet_.size());
@@ -115,7 +82,7 @@ class WalkController final : public Controller {
       // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
       // step fell short.
       const double largest = kLargestLearnt * speed_;
-      if (!planar()) learnt_ *= 1 - kForgotten;
+      learnt_ *= 1 - balance_->forgetting();
       learnt_ = (learnt_ + asked_ - velocity_).cwiseMax(-largest).cwiseMin(largest);
       asked_ = velocity_ + body_.h * wanted_acceleration();
       for (int axis = 0; axis < 3; ++axis) {
@@ -134,7 +101,7 @@ class WalkController final : public Controller {
   bool arrived() const override { return arrived_; }
 
   std::string phase() const override {
-    return phase_ == kStand ? kPhaseNames[phase_] : kPhaseNames[phase_] + std::to_string(swing_);
+    return phase_ == Stance::stand ? kPhaseNames[phase_] : kPhaseNames[phase_] + std::to_string(swing_);
   }
 
   Eigen::VectorXd state() const override {
@@ -148,7 +115,7 @@ class WalkController final : public Controller {
 
   void restore(const Eigen::VectorXd& state) override {
     begun_ = state[0] != 0;
-    phase_ = static_cast<Phase>(static_cast<int>(state[1]));
+    phase_ = static_cast<Stance::Phase>(static_cast<int>(state[1]));
     time_ = state[2];
     since_step_ = state[3];
     duration_ = state[4];
@@ -170,7 +137,6 @@ class WalkController final : public Controller {
   static constexpr int kFixedState = 27;
 
   int count() const { return static_cast<int>(feet_.size()); }
-  bool planar() const { return body_.dimension() == 2; }
   static Eigen::Vector3d up() { return Eigen::Vector3d::UnitY(); }
 
   // What the step begins with.
@@ -180,18 +146,18 @@ class WalkController final : public Controller {
     orientation_ = best_rotation(body_.mass, body_.rest, now.x);
     if (!begun_) {
       begun_ = true;
-      for (int i = 0; i < count(); ++i) held_[i] = place(i, now.x);
+      for (int i = 0; i < count(); ++i) held_[i] = feet_[i].centre(now.x);
       asked_ = velocity_;
       previous_ = count();
       way_.forward = Eigen::Vector3d::Zero();
-      if (!planar()) yaw_ = yaw_of(orientation_);
+      yaw_ = yaw_of(orientation_);
     }
-    std::vector<Eigen::Vector3d> every, all, staying;
+    std::vector<Eigen::Vector3d> every, loaded, staying;
     double ground = 0, bearing = 0;
     for (int i = 0; i < count(); ++i) {
       double load = 0, lowest = std::numeric_limits<double>::infinity();
       std::vector<Eigen::Vector3d> points;
-      for (const int v : feet_[i].vertices) {
+      for (const int v : feet_[i].vertices()) {
         points.push_back(spatial_point(now.x, v, body_.dimension()));
         lowest = std::min(lowest, points.back().y());
         if (now.loads.size() > 0) load += now.loads[v];
@@ -200,7 +166,7 @@ class WalkController final : public Controller {
       lowest_[i] = lowest;
       loaded_[i] = stands(body_, load);
       if (loaded_[i]) {
-        all.insert(all.end(), points.begin(), points.end());
+        loaded.insert(loaded.end(), points.begin(), points.end());
         ground += lowest;
         ++bearing;
       }
@@ -208,9 +174,9 @@ class WalkController final : public Controller {
       staying.insert(staying.end(), points.begin(), points.end());
     }
     if (bearing > 0) ground_ = ground / bearing;
-    all_ = Support(!planar() ? every : all.empty() ? staying : all);
+    every_ = Support(every);
+    loaded_support_ = Support(loaded.empty() ? staying : loaded);
     staying_ = Support(staying);
-    amid_ = Support(every).middle();
     const double rise = std::max(centre_.y() - ground_, 0.1 * body_.height);
     pendulum_ = std::sqrt(body_.gravity / rise);
   }
@@ -222,57 +188,24 @@ class WalkController final : public Controller {
     return true;
   }
 
-  Eigen::Vector3d place(int i, const Eigen::VectorXd& x) const { return centre_of_mass(feet_[i].mass, x); }
-
-  // The linear inverted pendulum: pushed at p, the centre of mass accelerates with ω² (c − p), and the
-  // capture point ξ = c + v/ω moves away from p with the rate ω (ξ − p) (Pratt et al. 2006).
-  Eigen::Vector3d capture_point() const { return level(centre_ + velocity_ / pendulum_); }
-  // From the support to the capture point, where it is outside.
-  Eigen::Vector3d falling() const { return capture_point() - staying_.nearest(capture_point()); }
-  // Of the capture point from where it shall be: above the feet that stay, on the side of the one that steps,
-  // which can catch a fall to its side only.
-  Eigen::Vector3d miss() const {
-    return capture_point() - (phase_ == kStand ? all_.middle() : staying_.nearest(amid_, kInset));
-  }
-  Eigen::Vector3d wanted_push() const {
-    if (planar()) return capture_point() + kCaptureGain * miss();
-    return capture_point() + (capture_point() - aim()) / (growth(time_left()) - 1);
-  }
-
-  // A body of space rocks from foot to foot: its feet may be lines on which it cannot stand. Pushed at the
-  // middle s of the feet that stay, the capture point falls from s + b to s + e b, e = exp(ω T), while the
-  // other foot goes to s + a + f: apart from the others by a, where it belongs, and onward by f. With b = a /
-  // (1 + e) + f / (e − 1) the next step, by f − a, begins as this one did.
-  Eigen::Vector3d aim() const {
-    if (phase_ == kStand) return all_.middle();
-    const double e = growth(swing_s_);
-    const Eigen::Vector3d s = staying_.middle(), belongs = level(middle(swing_) + home(swing_));
-    const Eigen::Vector3d b = (belongs - s) / (1 + e) + (landing() - belongs) / (e - 1);
-    return s + (phase_ == kSwing ? e : 1) * b;
-  }
-  Eigen::Vector3d landing() const { return level(phase_ == kSwing ? to_ : target(swing_)); }
-  double growth(double duration) const { return std::exp(pendulum_ * duration); }
-  // To lead the capture point to its aim.
-  double time_left() const {
-    return phase_ == kSwing ? std::max(swing_s_ - time_, kShortestFall * swing_s_) : swing_s_;
-  }
-
-  // Where the capture point is when the foot that steps has landed.
-  Eigen::Vector3d falls_to() const {
-    const Eigen::Vector3d push = staying_.nearest(wanted_push(), kEdge);
-    return push + growth(time_left()) * (capture_point() - push);
-  }
-
-  // Whether the foot that steps will be there in time.
-  bool can_step() const {
-    const Eigen::Vector3d push = wanted_push();
-    if (planar()) return staying_.nearest(push, kLiftEdge) == push;
-    return (falls_to() - landing()).norm() < (staying_.middle() - landing()).norm();
+  // The present step, for the balance. `swing_` is the foot that steps.
+  Stance stance() const {
+    return {phase_,
+            body_.height,
+            pendulum_,
+            level(centre_ + velocity_ / pendulum_),
+            every_,
+            loaded_support_,
+            staying_,
+            level(middle(swing_) + home(swing_)),
+            level(phase_ == Stance::swing ? to_ : target(swing_)),
+            swing_s_,
+            phase_ == Stance::swing ? swing_s_ - time_ : swing_s_};
   }
 
   // One that the feet on the ground can give without turning the body or leaving the ground.
   Eigen::Vector3d wanted_acceleration() const {
-    const Eigen::Vector3d push = (phase_ == kSwing ? staying_ : all_).nearest(wanted_push(), kEdge);
+    const Eigen::Vector3d push = balance_->push(stance());
     const double frequency = kHeightFrequency * frequency_;
     const double climb =
         frequency * frequency * (ground_ + rest_rise_ - centre_.y()) - 2 * frequency * velocity_.y();
@@ -283,7 +216,7 @@ class WalkController final : public Controller {
   // Upright, but while a foot swings the body leans away from it.
   Eigen::Vector3d turning_rate() const {
     Eigen::Vector3d head = up();
-    if (phase_ == kSwing) {
+    if (phase_ == Stance::swing) {
       const double part = std::sin(std::numbers::pi * std::min(1.0, time_ / swing_s_));
       head -= part * std::tan(sway_) * home(swing_).normalized();
     }
@@ -294,7 +227,7 @@ class WalkController final : public Controller {
   }
 
   // Of foot i, less the middle of the body, as the body shall be turned.
-  Eigen::Vector3d home(int i) const { return Eigen::AngleAxisd(yaw_, up()) * feet_[i].home; }
+  Eigen::Vector3d home(int i) const { return Eigen::AngleAxisd(yaw_, up()) * feet_[i].home(); }
   // Middle of the body that all feet, or all but one, belong to.
   Eigen::Vector3d middle(int but = -1) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -317,11 +250,12 @@ class WalkController final : public Controller {
   // The foot that is farthest behind shall step next; those in front begin.
   void choose(const Observation& now) {
     way_ = course_.way(middle(), step_, now.others);
-    if (face_heading_ && !planar()) {
+    if (face_heading_) {
       const double heading = std::atan2(way_.forward.x(), way_.forward.z());
       yaw_ += std::clamp(nearest_turn(heading - yaw_), -kLargestTurn, kLargestTurn);
     }
-    const double shortest = (course_.ends(way_) ? kShortestAtEnd : kShortest) * body_.height;
+    const double shortest =
+        std::max(kShortest * body_.height, course_.ends(way_) ? kShortestAtEnd * step_ : 0);
     double longest = 0;
     int next = -1;
     for (int i = 0; i < count(); ++i) {
@@ -334,45 +268,44 @@ class WalkController final : public Controller {
     if (next < 0) {
       arrived_ = course_.ends(way_);
       previous_ = count();
-      enter(kStand);
+      enter(Stance::stand);
     } else {
       swing_ = next;
-      enter(kShift);
+      enter(Stance::shift);
     }
   }
 
   // From where the feet are, with another foot than the last.
   void go_on(const Observation& now) {
-    for (int i = 0; i < count(); ++i) held_[i] = place(i, now.x);
+    for (int i = 0; i < count(); ++i) held_[i] = feet_[i].centre(now.x);
     previous_ = swing_;
     choose(now);
   }
 
-  void enter(Phase phase) {
+  void enter(Stance::Phase phase) {
     phase_ = phase;
     time_ = 0;
   }
 
   void advance(const Observation& now) {
     switch (phase_) {
-      case kStand:
+      case Stance::stand:
         since_step_ = 0;
         if (stands(body_, now.load)) choose(now);
         break;
-      case kShift: {
+      case Stance::shift: {
         if (time_ > kLongestShift * swing_s_) {  // it leans on the foot that shall step
           go_on(now);
           break;
         }
-        if (!staying_stand() || !can_step()) break;
-        from_ = place(swing_, now.x);
+        if (!staying_stand() || !balance_->can_step(stance())) break;
+        from_ = feet_[swing_].centre(now.x);
         to_ = target(swing_);
-        enter(kSwing);
+        enter(Stance::swing);
         break;
       }
-      case kSwing: {
-        if (planar() && falling().norm() > kLargestFall * body_.height)
-          time_ = std::max(time_, swing_s_);  // down at once
+      case Stance::swing: {
+        if (balance_->must_land(stance())) time_ = std::max(time_, swing_s_);
         const bool early = time_<kEarliestLanding * swing_s_, late = time_> kLatestLanding * swing_s_;
         if (early || !(loaded_[swing_] || late)) break;
         duration_ = since_step_;
@@ -383,19 +316,11 @@ class WalkController final : public Controller {
     }
   }
 
-  // How much further a foot steps to catch a fall.
-  Eigen::Vector3d catching() const {
-    const Eigen::Vector3d step = kCatch * level(falls_to() - aim());
-    const double most = kLongestCatch * body_.height;
-    return step.norm() > most ? most * step.normalized() : step;
-  }
-
   // Where a foot on its way shall be, and how fast it shall go.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> swing_path() const {
     constexpr double pi = std::numbers::pi;
     const double t = time_ / swing_s_, part = std::min(t, 1.0), sinking = kSinking * speed_;
-    Eigen::Vector3d way = level(to_ - from_);
-    if (!planar()) way += catching();
+    const Eigen::Vector3d way = level(to_ - from_) + balance_->further(stance());
     Eigen::Vector3d at = from_ + smooth_step(part) * way;
     Eigen::Vector3d rate = 6 * part * (1 - part) / swing_s_ * way;
     at.y() += lift_ * std::sin(pi * part) - sinking * std::max(0.0, time_ - swing_s_);
@@ -404,46 +329,17 @@ class WalkController final : public Controller {
   }
 
   void add_foot(std::vector<Goal>& goals, int i, const Eigen::VectorXd& x) const {
-    const Foot& foot = feet_[i];
-    const bool swings = phase_ == kSwing && i == swing_;
-    // A foot that stays keeps its place on the ground, and feels for the ground when it is not there.
-    Eigen::Vector3d at(held_[i].x(), place(i, x).y(), held_[i].z());
-    Eigen::Vector3d rate(0, loaded_[i] ? 0 : -kSinking * speed_, 0);
-    if (swings) std::tie(at, rate) = swing_path();
     const double kd = std::sqrt(kFootEffort * body_.mass.sum());
-    const double kp = (swings ? kSwingFrequency : kStanceFrequency) * frequency_ * kd;
-    if (!planar()) {
-      if (!swings && loaded_[i]) at.y() = lowest_[i] - foot.arms.col(1).minCoeff();
-      add_sole(goals, foot, kp, kd, at, rate);
-      return;
-    }
-    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-    if (swings) {
-      turn = upright_rate(best_rotation(foot.mass, body_.rest, x), kUprightFrequency * frequency_);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d direction = Eigen::Vector3d::Unit(axis);
-      goals.push_back(
-          {centre_of_mass_weights(foot.mass, direction, body_.dimension()), kp, kd, at[axis], rate[axis]});
-      if (planar() && axis < 2) continue;
-      goals.push_back({spin_weights(foot.mass, x, direction), 0, foot.size * kd, 0, turn[axis]});
-    }
-  }
-
-  // Each vertex of the foot shall be where it belongs when the centre of the foot is at `at`: only a sole
-  // that is flat on the ground can push where the balance needs it.
-  void add_sole(std::vector<Goal>& goals, const Foot& foot, double kp, double kd, const Eigen::Vector3d& at,
-                const Eigen::Vector3d& rate) const {
-    const double share = 1 / std::sqrt(static_cast<double>(foot.vertices.size()));
-    for (std::size_t k = 0; k < foot.vertices.size(); ++k) {
-      const Eigen::Vector3d arm = foot.arms.row(static_cast<Eigen::Index>(k));
-      const Eigen::Vector3d place = at + Eigen::AngleAxisd(yaw_, up()) * arm;
-      Eigen::VectorXd vertex = Eigen::VectorXd::Zero(body_.mass.size());
-      vertex[foot.vertices[k]] = 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        goals.push_back({centre_of_mass_weights(vertex, Eigen::Vector3d::Unit(axis), 3), share * kp,
-                         share * kd, place[axis], rate[axis]});
-      }
+    FootTarget target{.yaw = yaw_};
+    if (phase_ == Stance::swing && i == swing_) {
+      std::tie(target.at, target.rate) = swing_path();
+      target.upright = kUprightFrequency * frequency_;
+      feet_[i].add_goals(x, target, kSwingFrequency * frequency_ * kd, kd, goals);
+    } else {  // it keeps its place on the ground, and feels for the ground when it is not there
+      target.at = held_[i];
+      target.at.y() = loaded_[i] ? feet_[i].standing_height(x, lowest_[i]) : feet_[i].centre(x).y();
+      target.rate = {0, loaded_[i] ? 0 : -kSinking * speed_, 0};
+      feet_[i].add_goals(x, target, kStanceFrequency * frequency_ * kd, kd, goals);
     }
   }
 
@@ -451,12 +347,13 @@ class WalkController final : public Controller {
   Course course_;
   double pace_, step_, lift_, swing_s_, sway_, weight_, upright_;
   bool face_heading_;
+  std::unique_ptr<WalkingBalance> balance_;
   double frequency_, speed_;  // √(g / L), 1/s, and √(g L), m/s
   double rest_rise_ = 0;      // of the centre of mass above the lowest vertex at rest, m
   std::vector<Foot> feet_;
 
   bool begun_ = false;
-  Phase phase_ = kStand;
+  Stance::Phase phase_ = Stance::stand;
   double time_ = 0;               // since the phase began, s
   double since_step_ = 0;         // since a foot landed, s
   double duration_ = 0;           // of the last step, s
@@ -472,13 +369,11 @@ class WalkController final : public Controller {
   // Of the present step.
   Eigen::Vector3d centre_, velocity_;
   Eigen::Matrix3d orientation_;
-  std::vector<bool> loaded_;    // feet that the ground bears
-  std::vector<double> lowest_;  // heights of the feet, m
-  Support all_;                 // under all feet that bear the body; of a body of space under all
-  Support staying_;             // under all but the one that steps
-  Eigen::Vector3d amid_;        // all feet, m
-  double ground_ = 0;           // height under the feet that bear the body, m
-  double pendulum_ = 0;         // ω, 1/s
+  std::vector<bool> loaded_;                  // feet that the ground bears
+  std::vector<double> lowest_;                // heights of the feet, m
+  Support every_, loaded_support_, staying_;  // as in the stance
+  double ground_ = 0;                         // height under the feet that bear the body, m
+  double pendulum_ = 0;                       // ω, 1/s
 };
 
 }  // namespace
