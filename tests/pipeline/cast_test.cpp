@@ -23,7 +23,7 @@ TEST(Cast, AceWalksOnItsCornersAndTurnsInTheAir) {
   EXPECT_LE(run.at("ace", "tilt_deg", 1), 5);
 }
 
-TEST(Cast, AceOfExamplesBowsHopsAndTurnsHalfRound) {
+TEST(Cast, AceOfExamplesWalksOnItsCornersBowsAndTurnsHalfRound) {
   const SceneRun run("ace_examples.yaml");
   expect_played(run, "ace_examples");
   EXPECT_LE(run.most("ace", "tilt_deg"), 20) << "of the bow";
