@@ -9,10 +9,10 @@
 namespace vivify::sim {
 
 struct FootTarget {
-  Eigen::Vector3d at;    // of its centre, m
-  Eigen::Vector3d rate;  // of its centre, m/s
-  double upright = 0;    // frequency with which it turns upright, 1/s
-  double yaw = 0;        // of the body about the vertical
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();    // of its centre, m
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // of its centre, m/s
+  double upright = 0;                              // frequency with which it turns upright, 1/s
+  double yaw = 0;                                  // of the body about the vertical
 };
 
 class Foot {

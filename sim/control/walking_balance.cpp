@@ -22,7 +22,7 @@ class Shifting final : public WalkingBalance {
     return falling.norm() > kLargestFall * now.height;
   }
   Eigen::Vector3d further(const Stance&) const override { return Eigen::Vector3d::Zero(); }
-  double forgetting() const override { return 0; }
+  double forgetting() const override { return 1.5; }
 
  private:
   static constexpr double kCaptureGain = 4;  // push beyond the capture point, per distance that it is off
@@ -58,7 +58,7 @@ class Rocking final : public WalkingBalance {
     const double most = kLongestCatch * now.height;
     return step.norm() > most ? most * step.normalized() : step;
   }
-  double forgetting() const override { return 0.2; }
+  double forgetting() const override { return 10; }
 
  private:
   static constexpr double kShortestFall = 0.4;  // of a step: time in which a push leads the capture point

@@ -38,7 +38,7 @@ class WalkingBalance {
   virtual bool must_land(const Stance& now) const = 0;
   // How much further it goes than it was meant to, m.
   virtual Eigen::Vector3d further(const Stance& now) const = 0;
-  // Share of what was learnt to be asked for on top that is forgotten in a time step.
+  // Rate at which is forgotten what was learnt to be asked for on top, 1/s.
   virtual double forgetting() const = 0;
 };
 

@@ -19,24 +19,25 @@ namespace vivify::sim {
 namespace {
 
 // Frequencies are in units of √(g / L), speeds of √(g L), with the height L of the body.
-constexpr double kHeightFrequency = 2.5;     // of the centre of mass about its wanted height
-constexpr double kUprightFrequency = 2.5;    // wanted turning rate per radian of tilt
-constexpr double kSwingFrequency = 5;        // k_p over k_d of a foot on its way
-constexpr double kStanceFrequency = 1.5;     // of a foot that stays
-constexpr double kSinking = 0.1;             // speed of a foot that feels for the ground
-constexpr double kLargestLearnt = 0.5;       // speed that is asked for on top
-constexpr double kFootEffort = 2;            // weight of the goals of a foot
-constexpr double kFall = 0.3;                // largest wanted acceleration downwards, g
-constexpr double kRise = 0.5;                // and upwards
-constexpr double kEarliestLanding = 0.6;     // share of a step after which its foot may have landed
-constexpr double kLatestLanding = 3;         // after which it is taken for landed
-constexpr double kLongestShift = 5;          // after which another foot steps
-constexpr double kShortest = 0.05;           // of the height: steps that are not worth taking
-constexpr double kShortestAtEnd = 0.25;      // of a whole one, where the way ends
-constexpr double kLineGain = 0.5;            // share of a sideways offset that a step takes back
-constexpr double kLargestTurn = 0.3;         // of a step, radians
-constexpr double kTurnFrequency = 4;         // wanted turning rate about the vertical per radian, 1/s
-constexpr double kLargestTurningRate = 1.5;  // 1/s
+constexpr double kHeightFrequency = 2.5;      // of the centre of mass about its wanted height
+constexpr double kUprightFrequency = 2.5;     // wanted turning rate per radian of tilt
+constexpr double kSwingFrequency = 5;         // k_p over k_d of a foot on its way
+constexpr double kStanceFrequency = 1.5;      // of a foot that stays
+constexpr double kSinking = 0.1;              // speed of a foot that feels for the ground
+constexpr double kLargestLearnt = 0.5;        // speed that is asked for on top
+constexpr double kFootEffort = 2;             // weight of the goals of a foot
+constexpr double kFall = 0.3;                 // largest wanted acceleration downwards, g
+constexpr double kRise = 0.5;                 // and upwards
+constexpr double kEarliestLanding = 0.6;      // share of a step after which its foot may have landed
+constexpr double kLatestLanding = 3;          // after which it is taken for landed
+constexpr double kLongestShift = 5;           // after which another foot steps
+constexpr double kShortest = 0.05;            // of the height: steps that are not worth taking
+constexpr double kShortestAtEnd = 0.15;       // where the way ends
+constexpr double kShortestShareAtEnd = 0.42;  // of a whole one there
+constexpr double kLineGain = 0.5;             // share of a sideways offset that a step takes back
+constexpr double kLargestTurn = 0.3;          // of a step, radians
+constexpr double kTurnFrequency = 4;          // wanted turning rate about the vertical per radian, 1/s
+constexpr double kLargestTurningRate = 1.5;   // 1/s
 
 constexpr const char* kPhaseNames[] = {"stand", "shift", "swing"};  // by Stance::Phase
 
@@ -82,7 +83,7 @@ class WalkController final : public Controller {
       // Goals are tracked with a bias (they are weighed against the regulariser): ask for more where the last
       // step fell short.
       const double largest = kLargestLearnt * speed_;
-      learnt_ *= 1 - balance_->forgetting();
+      learnt_ *= std::exp(-body_.h * balance_->forgetting());
       learnt_ = (learnt_ + asked_ - velocity_).cwiseMax(-largest).cwiseMin(largest);
       asked_ = velocity_ + body_.h * wanted_acceleration();
       for (int axis = 0; axis < 3; ++axis) {
@@ -254,8 +255,8 @@ class WalkController final : public Controller {
       const double heading = std::atan2(way_.forward.x(), way_.forward.z());
       yaw_ += std::clamp(nearest_turn(heading - yaw_), -kLargestTurn, kLargestTurn);
     }
-    const double shortest =
-        std::max(kShortest * body_.height, course_.ends(way_) ? kShortestAtEnd * step_ : 0);
+    const double shortest_at_end = std::min(kShortestAtEnd * body_.height, kShortestShareAtEnd * step_);
+    const double shortest = std::max(kShortest * body_.height, course_.ends(way_) ? shortest_at_end : 0);
     double longest = 0;
     int next = -1;
     for (int i = 0; i < count(); ++i) {
