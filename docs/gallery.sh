@@ -6,7 +6,7 @@ vivify=${VIVIFY:-build/release/vivify}
 
 render() { # scene
   local out=out/gallery/$1
-  rm -rf "$out/render"
+  rm -rf "$out/sim" "$out/render"
   "$vivify" simulate "configs/$1.yaml" -o "$out" -q
   local last frames
   last=$(ls "$out"/sim/frames | tail -1 | sed 's/^0*//; s/\.h5//')
