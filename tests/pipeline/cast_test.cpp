@@ -29,7 +29,7 @@ TEST(Cast, AceOfExamplesWalksOnItsCornersBowsAndTurnsHalfRound) {
   EXPECT_LE(run.most("ace", "tilt_deg"), 20) << "of the bow";
 }
 
-// The kinematic objectives are the same; what differs is the rest space.
+// The light one is also asked to sway less; that it twists comes from its rest space.
 TEST(Cast, OneCrustySwaysAndTheOtherTwistsToTheEndOfTheRace) {
   const SceneRun run("crusty_race.yaml");
   expect_played(run, "crusty_race");
