@@ -20,7 +20,7 @@ FEET = {"S": 38, "G": 42, "P": 36}  # half the width of the foot of letters that
 SERIFS = {  # where serifs that face one another end, and where they shall, units: farther apart than half a step
     "A": {29.7: 37, 62.2: 68},
     "H": {51.4: 44, 65.6: 73},
-    "R": {51.4: 41, 75.5: 62},
+    "R": {51.4: 44, 75.5: 59},
 }
 FOOT, BEVEL = 11, 2  # its height; by how much it is narrower above on either side
 CURVE = 8  # pieces that a curve becomes

@@ -171,7 +171,7 @@ std::vector<Role> make_roles() {
                               .distance = 5 * 1.04,
                               .flights = 8,
                               .course = "behavior[0].hop",
-                              .of_scene = {"colliders.board.position=[0, 0, -9]"}},
+                              .of_scene = {"colliders.board.position=[0, 0, -9]", "colliders.table.scale=2"}},
                              grape("grape1"),
                              grape("grape2"),
                              grape("grape3"),
@@ -231,7 +231,7 @@ std::vector<Role> make_roles() {
                              letter("I", -3.11, 0.51),
                              letter("G", -2.24, 0.97),
                              letter("G2", -1.11, 0.97),
-                             letter("R", 0.06, 1.08),
+                             walking_letter("R", 0.06, 1.08),
                              letter("A", 1.38, 1.09),
                              letter("P", 2.48, 0.93),
                              walking_letter("H", 3.73, 1.17)};
