@@ -22,6 +22,7 @@ TEST_P(Errands, AreRunByCommandLineAlone) {
 INSTANTIATE_TEST_SUITE_P(Cast, Errands,
                          testing::Values(Sent{"tea_cups", "cup", 12}, Sent{"tea_cups", "mug", 12},
                                          Sent{"tea_cups", "espresso", 12}, Sent{"cross", "cross", 12},
+                                         Sent{"cheesy", "cheesy", 12}, Sent{"crusty_race", "light", 12},
                                          Sent{"crusty_race", "dark", 12}, Sent{"castle_solid", "castle", 6},
                                          Sent{"castle_rod", "castle", 6}, Sent{"pirate", "pirate", 6},
                                          Sent{"letters", "S", 6}, Sent{"letters", "I", 6},
