@@ -18,7 +18,7 @@ LETTERS = "SIGRAPH"
 HEIGHT = 100  # units of the drawing
 FEET = {"S": 38, "G": 42, "P": 36}  # half the width of the foot of letters that would not stand, units
 SERIFS = {  # where serifs that face one another end, and where they shall, units: farther apart than half a step
-    "A": {29.7: 37, 62.2: 68},
+    "A": {29.7: 46, 62.2: 60},
     "H": {51.4: 44, 65.6: 73},
     "R": {51.4: 44, 75.5: 59},
 }

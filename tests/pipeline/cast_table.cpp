@@ -232,7 +232,7 @@ std::vector<Role> make_roles() {
                              letter("G", -2.24, 0.97),
                              letter("G2", -1.11, 0.97),
                              walking_letter("R", 0.06, 1.08),
-                             letter("A", 1.38, 1.09),
+                             walking_letter("A", 1.38, 1.09),
                              letter("P", 2.48, 0.93),
                              walking_letter("H", 3.73, 1.17)};
   return roles;
