@@ -30,17 +30,22 @@ constexpr std::array<KindEntry, 4> kKinds = {{{"mesh", "tetrahedra", "a surface 
                                               {"outline", "edges", "edges along an outline"}}};
 const KindEntry& entry_of(BodyKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
-Schema example_schema() {
+Schema pose_of_body_schema() {
   return object("A pose of the simulation mesh.")
       .field("file",
              path("Mesh of the pose, in the coordinates of the body's own mesh or outline: for a shell "
                   "the surface of the body with its vertices moved; for others a PLY with the "
                   "vertices of the simulation mesh in their order, as `vivify pose` writes it."))
       .field("pose", path("Pose file (see `vivify pose`), solved for the simulation mesh when it is needed."))
-      .field("name", string("Name in messages and for `pose`. Left out: that of the file, without its ending."))
-      .field("group", string("Examples of one group share a hull: their weights are kept from being negative "
-                             "and from summing to more than 1.")
-                          .initially(""));
+      .field("name",
+             string("Name in messages and for `pose`. Left out: that of the file, without its ending."));
+}
+
+Schema example_schema() {
+  return pose_of_body_schema().field(
+      "group", string("Examples of one group share a hull: their weights are kept from being negative "
+                      "and from summing to more than 1.")
+                   .initially(""));
 }
 
 Schema examples_schema(std::string doc) {
@@ -58,6 +63,11 @@ Schema rest_space_schema() {
                                     "as the cage, in the coordinates of the outline; it moves with the "
                                     "body's position and scale.",
                                     vector("A corner, x and y.", 2).unit("m")))
+              .field(
+                  "examples",
+                  list("Poses for `pose` and `blend`, which the cage takes as nearly as it can; what a pose "
+                       "leaves in its place stays there more closely than the rest.",
+                       pose_of_body_schema()))
               .field("harmonic_unknowns",
                      integer("Size of the problem that gives the harmonic coordinates; more is more "
                              "accurate.")

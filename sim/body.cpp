@@ -176,9 +176,8 @@ Body::Body(const BodyInput& input, const WorldSettings& settings)
   const int d = model_.dimension();
   for (Eigen::Index i = 0; i < model_.mass.size(); ++i) state_.v.segment(d * i, d) = input.velocity.head(d);
   for (const ExamplePose& example : input.examples) examples_.push_back(example.name);
-  const ControlledBody controlled{
-      model_.mass, rest_, model_.height, -settings.gravity.y(), settings.h, model_.rest->parameters(),
-      examples_};
+  const ControlledBody controlled{model_.mass, rest_,     model_.height,       -settings.gravity.y(),
+                                  settings.h,  examples_, model_.rest->poses()};
   controller_ = input.behavior.items().empty() ? make_controller(controlled, input.controller)
                                                : make_script(controlled, input.behavior);
   const auto keyed = controller_->rest_parameters(0);

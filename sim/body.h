@@ -24,7 +24,7 @@ struct BodyInput {
   SimMesh rest;                       // placed in the scene
   std::string rest_space = "cage";    // a name of sim/rest/rest_space.h
   Eigen::MatrixXd cage_weights;       // #V by #C: harmonic coordinates of the rest vertices (cage)
-  std::vector<ExamplePose> examples;  // placed in the scene (examples, strains)
+  std::vector<ExamplePose> examples;  // placed in the scene (cage, examples, strains)
   ContactPoints contact_points;       // that touch colliders
   Value model, regularizer, contact, controller, solver;
   Value behavior = Value::list({});  // in place of the controller when it has items

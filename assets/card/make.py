@@ -1,7 +1,7 @@
 """Ace, the ace of spades: a card of 0.7 m by 1 m, bent about the vertical so that it can stand on its two lower corners:
 its chest is at +z, and it leans back until its middle is above its feet. Its picture, on both sides, is the same from the
-left and from the right. `python3 make.py` writes card.glb and card.png beside this
-file; `--check` compares instead."""
+left and from the right. `python3 make.py` writes card.glb, its cage cage.glb, and card.png beside this file; `--check`
+compares instead."""
 
 import pathlib
 import sys
@@ -56,6 +56,27 @@ def bent(vertices):
     feet = depth(np.array([FOOT, WIDTH / 2 - CORNER])).mean()
     lean = (feet - depth(np.linspace(0, WIDTH / 2, 100)).mean()) / (HEIGHT / 2)
     return np.stack([RADIUS * np.sin(x / RADIUS), y, depth(x) + lean * y - depth(FOOT)], axis=1)
+
+
+def cage():
+    """Vertices and triangles of a cage round the card: four corners below and above it, and six points round its middle,
+    where it bends; the same from the left and from the right."""
+    def ring(y, points):
+        return [(x, y, z) for x, z in points]
+
+    back, front, side = -0.23, 0.08, 0.28
+    corners = [(-side, back), (side, back), (0.72 * side, front), (-0.72 * side, front)]
+    middle = [(-side, back), (0, back + 0.05), (side, back), (side, -0.05), (0, front + 0.03), (-side, -0.05)]
+    vertices = ring(-0.07, corners) + ring(0.45 * HEIGHT, middle) + ring(HEIGHT + 0.055, corners)
+    m = range(4, 10)
+
+    def band(b):  # from the four corners b to the middle
+        return [(b[0], m[0], m[1]), (b[0], m[1], b[1]), (b[1], m[1], m[2]), (b[1], m[2], m[3]), (b[1], m[3], b[2]),
+                (b[2], m[3], m[4]), (b[2], m[4], b[3]), (b[3], m[4], m[5]), (b[0], m[5], m[0]), (b[0], b[3], m[5]),
+                (b[0], b[1], b[2]), (b[0], b[2], b[3])]
+
+    triangles = np.array(band(range(4)) + [t[::-1] for t in band(range(10, 14))])
+    return np.array(vertices), triangles
 
 
 def spade(x, y):
@@ -116,9 +137,13 @@ def make():
     print(f"card: {len(triangles)} triangles, {len(vertices)} vertices, lowest {vertices[:, 1].min():.4f} m")
     part = {"name": "card", "positions": vertices, "triangles": triangles, "uv": uv, "color": (1.0, 1.0, 1.0),
             "metallic": 0.0, "roughness": 0.4}
+    positions, faces = cage()
+    round_it = part | {"name": "cage", "positions": positions, "triangles": faces}
+    del round_it["uv"]
     return {"card.glb": files.glb_bytes("card", [part], generator="assets/card/make.py"),
+            "cage.glb": files.glb_bytes("cage", [round_it], generator="assets/card/make.py"),
             "card.png": files.png_bytes(*picture())}
 
 
 if __name__ == "__main__":
-    generator.main(make, __file__, "Makes card.glb and card.png.")
+    generator.main(make, __file__, "Makes card.glb, cage.glb and card.png.")

@@ -91,7 +91,7 @@ void put_examples(const Job& job, const Value& body, const Hdf5Reader& mesh, Hdf
     const RowMatrixXd pose = example_pose(job.scene, body, example, rest);
     file.put("/examples/" + std::to_string(names.size()) + "/V", pose);
     names.push_back(example_name(example));
-    groups.push_back(example["group"].as_string());
+    groups.push_back(example.has("group") ? example["group"].as_string() : "");
   }
   file.put("/examples/names", names);
   file.put("/examples/groups", groups);
@@ -104,7 +104,7 @@ Bytes make_body(const Job& job, const Value& body) {
   file.put_attribute("schema_version", 2);
   file.put("/space", space);
   if (space == "cage") put_cage(job, body, mesh, file);
-  if (body["rest_space"].has("examples")) put_examples(job, body, mesh, file);
+  if (!examples_of(body).empty()) put_examples(job, body, mesh, file);
   return file.image();
 }
 

@@ -22,8 +22,8 @@ struct ControlledBody {
   double height;                               // of the body at rest, m
   double gravity;                              // downwards, m/s²
   double h;                                    // step size, s
-  int parameters = 0;                          // p of its rest space
-  std::span<const std::string> examples = {};  // names of those whose weights p are
+  std::span<const std::string> examples = {};  // names of its example poses
+  Eigen::MatrixXd poses = {};                  // #p by #examples: parameters of the rest shape in each
   int dimension() const { return static_cast<int>(rest.size() / mass.size()); }
 };
 

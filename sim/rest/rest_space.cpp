@@ -98,8 +98,10 @@ std::vector<std::vector<int>> example_groups(const std::vector<ExamplePose>& exa
 }
 
 ShapeSpace::ShapeSpace(Eigen::VectorXd X0, const Eigen::MatrixXd& L, Eigen::MatrixXd basis, double unit,
-                       std::vector<std::vector<int>> groups)
-    : RestSpace(std::move(basis), unit, std::move(groups)), X0_(std::move(X0)), Lq_(L * this->basis()) {}
+                       Eigen::MatrixXd poses, std::vector<std::vector<int>> groups)
+    : RestSpace(std::move(basis), unit, std::move(poses), std::move(groups)),
+      X0_(std::move(X0)),
+      Lq_(L * this->basis()) {}
 
 void ShapeSpace::measures(const ElasticFamilies& families, const Eigen::VectorXd& q,
                           std::vector<Eigen::VectorXd>& S, std::vector<RowMatrixXd>* J) const {

@@ -33,16 +33,18 @@ struct RestSpaceInput {
 
 class RestSpace {
  public:
-  // `unit`: size of a large parameter (m for displacements, 1 for weights of examples). `groups`: parameters
-  // that are weights of examples, by convex hull.
-  RestSpace(Eigen::MatrixXd basis, double unit, std::vector<std::vector<int>> groups)
-      : basis_(std::move(basis)), unit_(unit), groups_(std::move(groups)) {}
+  // `unit`: size of a large parameter (m for displacements, 1 for weights of examples). `poses`: parameters
+  // of each example. `groups`: parameters that are weights of examples, by convex hull.
+  RestSpace(Eigen::MatrixXd basis, double unit, Eigen::MatrixXd poses, std::vector<std::vector<int>> groups)
+      : basis_(std::move(basis)), unit_(unit), poses_(std::move(poses)), groups_(std::move(groups)) {}
   virtual ~RestSpace() = default;
 
   int parameters() const { return static_cast<int>(basis_.rows()); }
   int free_parameters() const { return static_cast<int>(basis_.cols()); }
   const Eigen::MatrixXd& basis() const { return basis_; }  // #p by #q
   double unit() const { return unit_; }
+  // #p by #examples: the parameters of each example, as near as the space comes to it.
+  const Eigen::MatrixXd& poses() const { return poses_; }
   const std::vector<std::vector<int>>& groups() const { return groups_; }
 
   // Measures S of the rest shape at q, per family (#values), and when J is not null their derivatives ∂S/∂q
@@ -58,6 +60,7 @@ class RestSpace {
  private:
   Eigen::MatrixXd basis_;
   double unit_;
+  Eigen::MatrixXd poses_;
   std::vector<std::vector<int>> groups_;
 };
 
@@ -65,7 +68,7 @@ class RestSpace {
 class ShapeSpace final : public RestSpace {
  public:
   ShapeSpace(Eigen::VectorXd X0, const Eigen::MatrixXd& L, Eigen::MatrixXd basis, double unit,
-             std::vector<std::vector<int>> groups = {});
+             Eigen::MatrixXd poses = {}, std::vector<std::vector<int>> groups = {});
 
   const Eigen::VectorXd& X0() const { return X0_; }
   const RowMatrixXd& L() const { return Lq_; }  // L · basis, a row per coordinate of the rest points
@@ -95,7 +98,8 @@ const RestSpaceEntry& rest_space_entry(std::string_view name);
 // full: every vertex is free (p: its displacement).
 std::unique_ptr<RestSpace> make_full_space(const RestSpaceInput& input);
 // cage: p are the displacements of the cage vertices, and the rest vertices follow with their harmonic
-// coordinates (Section 4).
+// coordinates (Section 4). Examples are poses to take, as near as the cage comes to them: in the sense of
+// least squares, where what the pose leaves in its place counts more, so that it stands as the pose does.
 std::unique_ptr<RestSpace> make_cage_space(const RestSpaceInput& input);
 // examples: p are weights of poses, interpolated element by element after registration (Section 5). Throws
 // Error(geometry) that names the pose and the element when one is turned inside out or has no size.

@@ -45,17 +45,23 @@ std::string espresso_misses(const SceneResult& run) {
   return espresso > mug ? "" : words("hops %d times, the mug %d times", espresso, mug);
 }
 
-std::string ace_of_the_cage_misses(const SceneResult& run) {
-  const double before = turn_deg(run, "ace", 1, 84), turn = turn_deg(run, "ace", 84, 192);
+// On the way he looks ahead; then he bows, and looks back at the end.
+std::string ace_misses(const SceneResult& run) {
+  const std::vector<RowMatrixXd> motion = run.motion("ace");
+  const std::vector<std::size_t>& rows = run.rows("ace");
+  const auto held = std::find_if(rows.begin(), rows.end(),
+                                 [&](std::size_t row) { return run.steps().text("phase", row) == "hold"; });
+  if (held == rows.end()) return "does not bow";
+  const std::size_t bow = static_cast<std::size_t>(held - rows.begin()) * motion.size() / rows.size();
+  Eigen::Index head;
+  const double height = motion.front().col(1).maxCoeff(&head);
+  const double bowed = height - motion[bow](head, 1);
+  if (bowed < 0.08) return words("bows by %.2f m", bowed);
+  const int last = static_cast<int>(motion.size());
+  const double before = turn_deg(run, "ace", 1, static_cast<int>(bow)), turn = turn_deg(run, "ace", 1, last);
   if (std::abs(before) > kMostAstray) return words("is turned by %.0f deg on the way", before);
   if (std::abs(std::abs(turn) - 180) > 30) return words("turns by %.0f deg in its trick", turn);
-  return run.velocity(run.rows("ace").back()).norm() > kAtRest ? "does not stand at the end" : "";
-}
-
-std::string ace_of_the_examples_misses(const SceneResult& run) {
-  const double turn = turn_deg(run, "ace", 1, 420);
-  if (std::abs(std::abs(turn) - 180) > 30) return words("turns by %.0f deg in its trick", turn);
-  return run.velocity(run.rows("ace").back()).norm() > kAtRest ? "does not stand at the end" : "";
+  return run.velocity(rows.back()).norm() > kAtRest ? "does not stand at the end" : "";
 }
 
 std::string dark_misses(const SceneResult& run) {
@@ -188,7 +194,7 @@ std::vector<Role> make_roles() {
                               .distance = 0.7,
                               .flights = 1,
                               .steps = 6,
-                              .missing = ace_of_the_cage_misses,
+                              .missing = ace_misses,
                               .course = "behavior[1].walk"},
                              {.scene = "ace_examples",
                               .body = "ace",
@@ -198,7 +204,7 @@ std::vector<Role> make_roles() {
                               .distance = 0.6,
                               .flights = 3,
                               .steps = 6,
-                              .missing = ace_of_the_examples_misses,
+                              .missing = ace_misses,
                               .course = "behavior[1].walk"},
                              {.scene = "castle_solid",
                               .body = "castle",

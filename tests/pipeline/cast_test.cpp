@@ -16,7 +16,7 @@ TEST(Cast, TheSphereRollsAlongACurveAndUpARamp) { expect_played(SceneRun("sphere
 
 TEST(Cast, ThreeCupsHopInCompanyEachInItsRhythm) { expect_played(SceneRun("tea_cups.yaml"), "tea_cups"); }
 
-TEST(Cast, AceWalksOnItsCornersAndTurnsInTheAir) {
+TEST(Cast, AceWalksOnItsCornersBowsAndTurnsInTheAir) {
   const SceneRun run("ace_cage.yaml");
   expect_played(run, "ace_cage");
   EXPECT_NEAR(run.vertices("ace", 1).size(), 231, 23);

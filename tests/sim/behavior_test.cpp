@@ -28,7 +28,7 @@ struct Actor {
       : mesh(standing_box()),
         mass(lumped_mass(sim_mesh(mesh), 300 * tet_volumes(mesh))),
         rest(flat(mesh.V)),
-        body{mass, rest, 1, 9.81, 0.02, 1},
+        body{mass, rest, 1, 9.81, 0.02, {}, Matrix::Ones(1, 1)},
         script(make_script(body, script_of(yaml))) {}
   std::size_t step(Others others = {}) {
     return script->goals({rest, Vector::Zero(rest.size()), 9.81 * mass.sum(), {}, others}).size();

@@ -40,7 +40,7 @@ World world(const BodyInput& input, bool statics) {
 
 std::unique_ptr<Controller> controller(const std::string& yaml) {
   static const Vector mass = Vector::Ones(4), rest = Vector::Ones(12);
-  static const ControlledBody body{mass, rest, 1, 9.81, kStep, 2};
+  static const ControlledBody body{mass, rest, 1, 9.81, kStep, {}, Matrix::Identity(2, 2)};
   return make_controller(body, settings(controller_schema(), yaml));
 }
 
@@ -69,7 +69,7 @@ TEST(Blend, RefusesKeysThatDoNotFit) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_THAT(error.what(), testing::HasSubstr("2 weights and the rest space has 1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("2 weights and the rest space has 1 example"));
   }
 }
 

@@ -196,7 +196,8 @@ TEST_P(HangingBody, PullsWithItsWeight) {
   double held = 0;
   for (const Hold::Spring& spring : hold.springs())
     held += body.x()[d * spring.vertex + 1] - rest[d * spring.vertex + 1];
-  EXPECT_NEAR(held / static_cast<double>(hold.springs().size()), -kSag * body.model().height, 1e-2 * kSag * body.model().height);
+  EXPECT_NEAR(held / static_cast<double>(hold.springs().size()), -kSag * body.model().height,
+              1e-2 * kSag * body.model().height);
 }
 
 // A pinned box bears another one that rests on it.

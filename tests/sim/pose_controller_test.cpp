@@ -65,6 +65,32 @@ TEST(PoseController, TakesAnExampleHoldsItAndLeavesIt) {
   EXPECT_LT(stage.records().back().tilt_deg, 1);
 }
 
+// A cage comes as near to the pose as it can, and stands on the same soles.
+TEST(PoseController, ACageTakesAPoseToo) {
+  BodyInput input =
+      actor("[{wait: {for_s: 0.2}}, {pose: {example: back, take_s: 0.5, hold_s: 0.5}}, {wait: }]");
+  input.rest_space = "cage";
+  World stage({input}, one(plane(1)), {});
+  const Body& body = stage.body(0);
+  const RestSpace& space = *body.model().rest;
+  const Vector back = space.basis() * (space.basis().transpose() * space.poses().col(1));
+  const double before = stage.body(0).x().maxCoeff();
+  bool held = false;
+  while (stage.time() < 2.5) {
+    stage.step();
+    const StepRecord& r = stage.records().back();
+    EXPECT_LE(r.residual_rel, 1e-8);
+    EXPECT_LT(r.tilt_deg, 30);
+    if (r.phase != "hold") continue;
+    held = true;
+    EXPECT_LE((body.p() - back).norm(), 1e-12);
+  }
+  EXPECT_TRUE(held);
+  EXPECT_GT(back.norm(), 0.05);
+  EXPECT_NEAR(body.x().maxCoeff(), before, 0.02);
+  EXPECT_LT(stage.records().back().tilt_deg, 1);
+}
+
 TEST(PoseController, GoesOnFromASavedFrame) {
   const std::string script = "[{pose: {example: bow, take_s: 0.1, hold_s: 0.1, leave_s: 0.1}}]";
   const testing_support::TemporaryFolder folder;

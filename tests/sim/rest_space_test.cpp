@@ -27,6 +27,8 @@ struct Cage {
   }
 };
 
+RowMatrixXd rows_of(const Vector& x) { return Eigen::Map<const RowMatrixXd>(x.data(), x.size() / 3, 3); }
+
 // Displacements of the 8 cage vertices of multilinear_weights for a displacement field.
 template <class Field>
 Vector cage_motion(const Points& V, const Field& field) {
@@ -52,6 +54,39 @@ TEST(CageSpace, ReproducesLinearMotionsOfTheCage) {
   for (Eigen::Index i = 0; i < cage.mesh.V.rows(); ++i) {
     EXPECT_LE((moved.segment<3>(3 * i) - field(cage.mesh.V.row(i).transpose())).norm(), 1e-14);
   }
+}
+
+// A pose that the cage can take is taken.
+TEST(CageSpace, TakesAPoseOfItsOwn) {
+  const Cage cage;
+  CounterRng rng(2);
+  const Vector p = 0.05 * random_vector(24, 1, rng);
+  BodyInput input = box_input(cage.mesh);
+  input.examples = {{"bow", "", cage.mesh.V + rows_of(cage.moved(p))}};
+  const BodyModel body = make_body_model(input, {});
+  ASSERT_EQ(body.rest->poses().cols(), 1);
+  EXPECT_LE((body.rest->poses().col(0) - p).norm(), 1e-10);
+}
+
+// One that it cannot take is approached by least squares, thirty times as closely where it moves nothing.
+TEST(CageSpace, ComesNearestToAPoseThatItCannotTake) {
+  const Cage cage;
+  RowMatrixXd pose = cage.mesh.V;
+  const Box box = bounding_box(cage.mesh.V);
+  Vector weight(pose.rows());
+  for (Eigen::Index i = 0; i < pose.rows(); ++i) {
+    const double up = (pose(i, 1) - box.min.y()) / (box.max.y() - box.min.y());
+    weight[i] = up < 1e-9 ? 30 : 1;
+    pose(i, 0) += 0.2 * (box.max.y() - box.min.y()) * up * up;
+  }
+  BodyInput input = box_input(cage.mesh);
+  input.examples = {{"lean", "", pose}};
+  const BodyModel body = make_body_model(input, {});
+  const RowMatrixXd missed = pose - cage.mesh.V - rows_of(cage.moved(body.rest->poses().col(0)));
+  EXPECT_GT(missed.norm(), 1e-3);
+  const Matrix gradient =
+      multilinear_weights(cage.mesh.V).transpose() * weight.cwiseAbs2().asDiagonal() * missed;
+  EXPECT_LE(gradient.norm(), 1e-10) << "the normal equations";
 }
 
 TEST(CageSpace, RemovesTheSixRigidMotionsAndNothingElse) {
@@ -107,6 +142,7 @@ TEST(CageSpace, RemovesParametersWithoutEffect) {
   BodyCase level{rod, rest_space_entry("cage"), small_meshes(2, 2).front()};
   level.mesh.mesh.V.col(1).setZero();
   BodyInput input = body_input(level);
+  input.examples.clear();  // poses of a body with a height
   const Matrix across =
       (Matrix(1, 4) << 0.3, 0.3, 0.7, 0.7).finished();  // shares of the lower and upper corners
   for (Eigen::Index i = 0; i < input.cage_weights.rows(); ++i) {

@@ -344,7 +344,8 @@ TEST(Free, ImplicitEulerDampsAModeByItsLaw) {
     const auto energy = [&] {
       const Body& body = world.body(0);
       const Eigen::Vector3d drift = centre_of_mass(model.mass, body.v());
-      double sum = problem.elastic_energy(0, problem.deformed_point(body.x()), problem.rest_point(zero, false));
+      double sum =
+          problem.elastic_energy(0, problem.deformed_point(body.x()), problem.rest_point(zero, false));
       for (int i = 0; i < 4; ++i) sum += 0.5 * m * (body.v().segment<3>(3 * i) - drift).squaredNorm();
       return sum;
     };

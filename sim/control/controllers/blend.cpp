@@ -7,8 +7,8 @@ namespace {
 
 class BlendController final : public Controller {
  public:
-  BlendController(std::vector<WeightKey> keys, bool smooth, double h)
-      : keys_(std::move(keys)), smooth_(smooth), h_(h) {}
+  BlendController(const ControlledBody& body, std::vector<WeightKey> keys, bool smooth)
+      : poses_(body.poses), keys_(std::move(keys)), smooth_(smooth), h_(body.h) {}
 
   std::vector<Goal> goals(const Observation&) override {
     ++steps_;
@@ -16,7 +16,7 @@ class BlendController final : public Controller {
   }
 
   std::optional<Eigen::VectorXd> rest_parameters(double t) const override {
-    return weights_at(keys_, smooth_, t);
+    return poses_ * weights_at(keys_, smooth_, t);
   }
 
   bool arrived() const override { return static_cast<double>(steps_) * h_ >= keys_.back().t; }
@@ -25,6 +25,7 @@ class BlendController final : public Controller {
   void restore(const Eigen::VectorXd& state) override { steps_ = static_cast<long>(state[0]); }
 
  private:
+  Eigen::MatrixXd poses_;  // #p by #examples
   std::vector<WeightKey> keys_;
   bool smooth_;
   double h_;
@@ -39,8 +40,8 @@ class BlendController final : public Controller {
 
 Schema blend_controller_schema() {
   return object(
-             "The rest shape follows keyframes, whatever comes of it, and has arrived at the last one. For "
-             "rest spaces of examples, with a weight for each.")
+             "The rest shape follows keyframes, whatever comes of it, and has arrived at the last one. Each "
+             "has a weight for each example of the rest space.")
       .field(
           "keys",
           list("The keyframes, in the order of time; in a script, time begins with the behaviour. Before the "
@@ -67,16 +68,16 @@ std::unique_ptr<Controller> make_blend_controller(const ControlledBody& body, co
   for (const Value& item : settings["keys"].items()) {
     WeightKey key = {item["t"].as_number(), item["weights"].as_vector()};
     if (!keys.empty() && !(key.t > keys.back().t)) fail(item, "controller.keys must be in the order of time");
-    if (key.weights.size() != body.parameters) {
+    if (key.weights.size() != body.poses.cols()) {
       throw Error(ErrorKind::usage,
                   "the controller gives " + std::to_string(key.weights.size()) +
-                      " weights and the rest space has " + std::to_string(body.parameters),
+                      " weights and the rest space has " + std::to_string(body.poses.cols()) + " examples",
                   "give one weight per example", item["weights"].where());
     }
     keys.push_back(std::move(key));
   }
-  return std::make_unique<BlendController>(std::move(keys), settings["between"].as_string() == "smooth",
-                                           body.h);
+  return std::make_unique<BlendController>(body, std::move(keys),
+                                           settings["between"].as_string() == "smooth");
 }
 
 }  // namespace vivify::sim

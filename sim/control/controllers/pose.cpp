@@ -14,8 +14,8 @@ class PoseController final : public Controller {
         take_s_(settings["take_s"].as_number()),
         hold_s_(settings["hold_s"].as_number()),
         leave_s_(settings["leave_s"].as_number()),
-        pose_(Eigen::VectorXd::Unit(body.parameters, example)),
-        start_(Eigen::VectorXd::Zero(body.parameters)) {}
+        pose_(body.poses.col(example)),
+        start_(Eigen::VectorXd::Zero(pose_.size())) {}
 
   std::vector<Goal> goals(const Observation& now) override {
     if (steps_ == 0) start_ = now.p;
@@ -50,7 +50,7 @@ class PoseController final : public Controller {
   double end() const { return take_s_ + hold_s_ + leave_s_; }
 
   double h_, take_s_, hold_s_, leave_s_;
-  Eigen::VectorXd pose_, start_;  // weights of the examples
+  Eigen::VectorXd pose_, start_;  // parameters of the rest shape
 
   long steps_ = 0;
 };
@@ -59,8 +59,8 @@ class PoseController final : public Controller {
 
 Schema pose_controller_schema() {
   return object(
-             "Takes an example pose, holds it and leaves it, whatever comes of it. For rest spaces of "
-             "examples. It ends when it has left the pose.")
+             "Takes an example pose, holds it and leaves it, whatever comes of it. It ends when it has left "
+             "the pose.")
       .field("example", string("Name of the example.").required())
       .field("take_s", number("Time to take the pose.").unit("s").above(0).initially(0.5))
       .field("hold_s", number("Time to hold it.").unit("s").at_least(0).initially(1))
@@ -84,7 +84,7 @@ void check_example(const Value& settings, const std::string& where, std::span<co
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   errors.emplace_back(ErrorKind::usage,
                       where + ".example = " + example.as_string() + ": the body has no such example",
-                      list.empty() ? "give it a rest_space of examples" : "it has " + list, example.where());
+                      list.empty() ? "give its rest_space examples" : "it has " + list, example.where());
 }
 
 }  // namespace vivify::sim

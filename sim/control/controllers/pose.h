@@ -1,5 +1,5 @@
 // Taking an example pose, holding it and leaving it: the keyframes of `blend` that are asked for most, told
-// by name, and from whatever weights there are.
+// by name, and from whatever rest shape there is.
 #pragma once
 
 #include <span>

@@ -18,9 +18,8 @@ std::unique_ptr<RestSpace> make_examples_space(const RestSpaceInput& input) {
                                                             input.reference.dimension(), pose.name) -
                                           X0;
   }
-  const Eigen::Index n = L.cols();
-  return std::make_unique<ShapeSpace>(std::move(X0), L, Eigen::MatrixXd::Identity(n, n), 1,
-                                      example_groups(input.examples));
+  const Eigen::MatrixXd weights = Eigen::MatrixXd::Identity(L.cols(), L.cols());
+  return std::make_unique<ShapeSpace>(std::move(X0), L, weights, 1, weights, example_groups(input.examples));
 }
 
 }  // namespace vivify::sim

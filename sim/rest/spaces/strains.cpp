@@ -9,10 +9,9 @@ namespace {
 // S(q) = S₀ + Σ q_k (s(X_k) − S₀), where squared lengths interpolate as lengths: S = ℓ(q)².
 class StrainSpace final : public RestSpace {
  public:
-  StrainSpace(const RestSpaceInput& input)
-      : RestSpace(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(input.examples.size()),
-                                            static_cast<Eigen::Index>(input.examples.size())),
-                  1, example_groups(input.examples)) {
+  // `weights`: the identity; p are the weights of the examples.
+  StrainSpace(const RestSpaceInput& input, const Eigen::MatrixXd& weights)
+      : RestSpace(weights, 1, weights, example_groups(input.examples)) {
     const Eigen::VectorXd X0 = stack(input.reference.V, input.points);
     for (const auto& family : input.families) {
       const bool squares = is_squared_length(*family);
@@ -67,7 +66,8 @@ class StrainSpace final : public RestSpace {
 }  // namespace
 
 std::unique_ptr<RestSpace> make_strains_space(const RestSpaceInput& input) {
-  return std::make_unique<StrainSpace>(input);
+  const auto examples = static_cast<Eigen::Index>(input.examples.size());
+  return std::make_unique<StrainSpace>(input, Eigen::MatrixXd::Identity(examples, examples));
 }
 
 }  // namespace vivify::sim
