@@ -135,11 +135,10 @@ def picture():
 def make():
     vertices, triangles, uv = card()
     print(f"card: {len(triangles)} triangles, {len(vertices)} vertices, lowest {vertices[:, 1].min():.4f} m")
-    part = {"name": "card", "positions": vertices, "triangles": triangles, "uv": uv, "color": (1.0, 1.0, 1.0),
-            "metallic": 0.0, "roughness": 0.4}
-    positions, faces = cage()
-    round_it = part | {"name": "cage", "positions": positions, "triangles": faces}
-    del round_it["uv"]
+    look = {"color": (1.0, 1.0, 1.0), "metallic": 0.0, "roughness": 0.4}
+    part = {"name": "card", "positions": vertices, "triangles": triangles, "uv": uv, **look}
+    corners, faces = cage()
+    round_it = {"name": "cage", "positions": corners, "triangles": faces, **look}
     return {"card.glb": files.glb_bytes("card", [part], generator="assets/card/make.py"),
             "cage.glb": files.glb_bytes("cage", [round_it], generator="assets/card/make.py"),
             "card.png": files.png_bytes(*picture())}

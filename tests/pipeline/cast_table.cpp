@@ -52,13 +52,13 @@ std::string ace_misses(const SceneResult& run) {
   const auto held = std::find_if(rows.begin(), rows.end(),
                                  [&](std::size_t row) { return run.steps().text("phase", row) == "hold"; });
   if (held == rows.end()) return "does not bow";
-  const std::size_t bow = static_cast<std::size_t>(held - rows.begin()) * motion.size() / rows.size();
+  const std::size_t shown = static_cast<std::size_t>(held - rows.begin()) * motion.size() / rows.size();
   Eigen::Index head;
   const double height = motion.front().col(1).maxCoeff(&head);
-  const double bowed = height - motion[bow](head, 1);
+  const double bowed = height - motion[shown](head, 1);
   if (bowed < 0.08) return words("bows by %.2f m", bowed);
-  const int last = static_cast<int>(motion.size());
-  const double before = turn_deg(run, "ace", 1, static_cast<int>(bow)), turn = turn_deg(run, "ace", 1, last);
+  const int bow = static_cast<int>(shown) + 1, last = static_cast<int>(motion.size());  // frames, from 1
+  const double before = turn_deg(run, "ace", 1, bow), turn = turn_deg(run, "ace", 1, last);
   if (std::abs(before) > kMostAstray) return words("is turned by %.0f deg on the way", before);
   if (std::abs(std::abs(turn) - 180) > 30) return words("turns by %.0f deg in its trick", turn);
   return run.velocity(rows.back()).norm() > kAtRest ? "does not stand at the end" : "";
