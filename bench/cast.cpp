@@ -72,7 +72,7 @@ void print(const Row& row, const std::filesystem::path& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
+  if (argc < 2 || argv[1][0] == '-') {
     std::fprintf(stderr, "cast FOLDER [NAME]\n");
     return 2;
   }

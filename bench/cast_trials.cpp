@@ -250,7 +250,7 @@ std::string document(const Rows& rows) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
+  if (argc < 2 || argv[1][0] == '-') {
     std::fprintf(stderr, "cast_trials FOLDER [NAME [varied|sent]]\n");
     return 2;
   }

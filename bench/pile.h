@@ -1,6 +1,8 @@
 // Soft spheres and cards above a bowl.
 #pragma once
 
+#include <ostream>
+
 #include "sim/world.h"
 
 namespace vivify::bench {
@@ -14,6 +16,11 @@ struct Pile {
   double speed = 0;          // downwards at the start, m/s
   double stiffness = 40000;  // of the spheres, Pa
 };
+
+// How a failing case of the tests is printed.
+inline void PrintTo(const Pile& pile, std::ostream* out) {
+  *out << pile.spheres << " spheres and " << pile.cards << " cards at " << pile.speed << " m/s";
+}
 
 sim::World pile_world(const Pile& pile, double h);
 // As many spheres side by side, too far apart to touch, each on the ground.

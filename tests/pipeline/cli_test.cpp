@@ -130,6 +130,7 @@ struct WrongScene {
   const char* replacement;
   std::vector<std::string> says;
 };
+void PrintTo(const WrongScene& scene, std::ostream* out) { *out << scene.name; }
 
 class WrongSceneTest : public testing::TestWithParam<WrongScene> {};
 

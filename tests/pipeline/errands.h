@@ -14,12 +14,13 @@ namespace vivify::testing_support {
 // Runs the errands of a character whose names contain `which`, and returns how many these are.
 inline int expect_errands_done(const std::string& scene, const std::string& body,
                                const std::string& which = "") {
+  const TemporaryFolder folder;
   int count = 0;
   for (const Role& role : roles_in(scene)) {
     if (role.body != body) continue;
     for (const Errand& errand : errands(role)) {
       if (errand.name.find(which) == std::string::npos) continue;
-      const SceneRun run(scene + ".yaml", errand.options);
+      const SceneResult run = simulated(folder.path() / "out", scene + ".yaml", errand.options);
       EXPECT_THAT(shortcomings(run, errand.role), ::testing::IsEmpty()) << errand.name;
       ++count;
     }

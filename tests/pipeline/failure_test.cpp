@@ -158,6 +158,7 @@ struct Impossible {
   std::vector<std::string> settings;
   std::vector<std::string> says;
 };
+void PrintTo(const Impossible& asked, std::ostream* out) { *out << asked.name; }
 
 class ImpossibleTest : public testing::TestWithParam<Impossible> {};
 

@@ -89,6 +89,7 @@ struct WrongPose {
   int code;
   std::vector<std::string> says;
 };
+void PrintTo(const WrongPose& pose, std::ostream* out) { *out << pose.name; }
 
 class WrongPoseTest : public PoseCommandTest, public testing::WithParamInterface<WrongPose> {};
 

@@ -28,6 +28,7 @@ struct WalkScene {
   double dofs, parameters;     // of Table 1
   std::vector<double> places;  // x to walk to, m; the first is that of the scene
 };
+void PrintTo(const WalkScene& scene, std::ostream* out) { *out << scene.name; }
 
 class WalkScenes : public ::testing::TestWithParam<WalkScene> {};
 

@@ -172,6 +172,7 @@ struct Shape {
   const char* name;
   const char* settings;
 };
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
 constexpr Shape kShapes[] = {
     {"plane", "{type: plane, normal: [1, 3, -0.5], size: 8}"},
     {"sphere", "{type: sphere, radius: 0.7}"},

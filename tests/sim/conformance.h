@@ -36,8 +36,5 @@ inline void PrintTo(const MeasureEntry& entry, std::ostream* out) { *out << entr
 inline void PrintTo(const ModelCase& tested, std::ostream* out) {
   *out << tested.model.name << " on a " << tested.mesh.name;
 }
-inline void PrintTo(const BodyCase& tested, std::ostream* out) {
-  *out << tested.model.name << " on a " << tested.mesh.name << " with " << tested.space.name;
-}
 
 }  // namespace vivify::sim

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,9 @@ struct BodyCase {
   RestSpaceEntry space;
   NamedMesh mesh;
 };
+inline void PrintTo(const BodyCase& tested, std::ostream* out) {
+  *out << tested.model.name << " on a " << tested.mesh.name << " with " << tested.space.name;
+}
 // Every model with every rest space on each of its small meshes.
 std::vector<BodyCase> body_cases(std::span<const ModelEntry> models, std::span<const RestSpaceEntry> spaces);
 std::string case_name(const ::testing::TestParamInfo<BodyCase>& tested);

@@ -55,6 +55,9 @@ struct Touching {
 struct Regime {
   double depth, friction, slip;
 };
+void PrintTo(const Regime& regime, std::ostream* out) {
+  *out << "depth " << regime.depth << " friction " << regime.friction << " slip " << regime.slip;
+}
 
 class PairContactDerivatives : public ::testing::TestWithParam<std::tuple<int, Regime>> {};
 

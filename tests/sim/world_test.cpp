@@ -120,7 +120,9 @@ TEST(RestShape, RecordsTellHowItChanges) {
       EXPECT_NEAR(r.rest_volume_ratio, now.sum() / sizes.sum(), 1e-12);
       EXPECT_NEAR(r.min_rest_element_ratio, std::min(1.0, now.cwiseQuotient(sizes).minCoeff()), 1e-12);
       const double rms = (X - before).norm() / std::sqrt(static_cast<double>(rest.V.rows()));
-      if (r.substeps == 1) EXPECT_NEAR(r.rest_rate, rms / body.model().height * 48, 1e-9);
+      if (r.substeps == 1) {
+        EXPECT_NEAR(r.rest_rate, rms / body.model().height * 48, 1e-9);
+      }
       slowest = std::min(slowest, r.rest_rate);
       fastest = std::max(fastest, r.rest_rate);
     }

@@ -4,6 +4,10 @@
 #include "bench/validation/problem.h"
 
 namespace vivify::validation {
+
+// In the namespace of its type, for GoogleTest.
+static void PrintTo(const ProblemEntry& problem, std::ostream* out) { *out << problem.name; }
+
 namespace {
 
 class Validation : public ::testing::TestWithParam<ProblemEntry> {};
