@@ -116,6 +116,20 @@ Role walking_letter(const char* name, double place, double width) {
   return role;
 }
 
+// Hops to the left in a style of its own.
+Role figure3(const char* scene, double distance) {
+  return {.scene = scene,
+          .body = "letter",
+          .gait = Gait::hop,
+          .height = 1,
+          .width = 0.56,
+          .in_plane = true,
+          .heading_deg = -90,
+          .distance = distance,
+          .flights = 4,
+          .course = "controller"};
+}
+
 // It rolls on for 20 of its diameters; the board may stop it then.
 Role grape(const char* name) {
   return {.scene = "cheesy",
@@ -240,7 +254,11 @@ std::vector<Role> make_roles() {
                              walking_letter("R", 0.06, 1.08),
                              walking_letter("A", 1.38, 1.09),
                              letter("P", 2.48, 0.93),
-                             walking_letter("H", 3.73, 1.17)};
+                             walking_letter("H", 3.73, 1.17),
+                             figure3("figure3_full", 1.5),
+                             figure3("figure3_cage", 1.5),
+                             figure3("figure3_bent", 1.5),
+                             figure3("figure3_compressed", 0.5)};
   return roles;
 }
 

@@ -18,7 +18,7 @@ using testing_support::Flight;
 using testing_support::Steps;
 
 constexpr double kHeight = 1;
-constexpr int kFrames = 72;
+constexpr int kFrames = 144;
 
 // Positions of the vertices about their mean in every frame.
 std::vector<RowMatrixXd> poses(const std::filesystem::path& out) {
@@ -66,7 +66,7 @@ TEST(Figure3, TheLetterHopsLeftInFourStyles) {
     EXPECT_GE(left, 2u);
     EXPECT_LE(steps.largest("residual_rel"), 1e-8);
     EXPECT_LE(steps.largest("max_penetration_m"), 0.02 * kHeight);
-    EXPECT_LE(steps.largest("tilt_deg"), 60);  // it has no goal that keeps it upright, and does not fall
+    EXPECT_LE(steps.largest("tilt_deg"), 45);
     motions.push_back(poses(out));
   }
   for (std::size_t a = 0; a < motions.size(); ++a) {
