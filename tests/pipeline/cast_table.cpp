@@ -257,7 +257,7 @@ std::vector<Role> make_roles() {
                              walking_letter("H", 3.73, 1.17),
                              figure3("figure3_full", 1.5),
                              figure3("figure3_cage", 1.5),
-                             figure3("figure3_bent", 1.5),
+                             figure3("figure3_bent", 1.2),
                              figure3("figure3_compressed", 0.5)};
   return roles;
 }
