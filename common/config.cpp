@@ -446,6 +446,10 @@ void apply_override(ConfigNode& root, const std::string& assignment) {
   std::string so_far;
   for (const std::string& step : split_path(path)) {
     if (node->kind == ConfigNode::Kind::null) {
+      if (!so_far.empty() && step.find_first_not_of("0123456789") == step.npos) {
+        throw Error(ErrorKind::usage, "--set: " + so_far + " is no list in the file that has a part " + step,
+                    "give the whole list: --set '" + so_far + "=[...]'");
+      }
       node->kind = ConfigNode::Kind::map;
       node->where = where;
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kNear = 0.2;       // of its width: how far from a place is there
 constexpr double kFallen = 60;      // °: who is tilted so much has fallen
 constexpr double kSunken = 0.15;    // of its height: how far who stands no more has sunk
-constexpr double kDropped = 1;      // of its height: who is so much lower has left the ground it began on
+constexpr double kDropped = 1;      // of its height: who is so much lower has left what it stood on
 constexpr double kNoHold = 0.15;    // of its weight: a level force that moves nobody
 constexpr double kOnItsWay = 0.05;  // of its height, in the last second
 
@@ -24,11 +24,11 @@ std::string words(const char* format, Values... values) {
   return text;
 }
 
-// The columns that tell what happened to a body.
+// The columns that tell what happened to a body from a behaviour of its script on.
 struct Track {
   std::vector<double> t, x, y, z, vx, vz, contacts, tilt;
 
-  Track(const StepTable& steps, const std::string& body)
+  Track(const StepTable& steps, const std::string& body, int behavior)
       : t(steps.column("t_s", body)),
         x(steps.column("com_x_m", body)),
         y(steps.column("com_y_m", body)),
@@ -36,7 +36,12 @@ struct Track {
         vx(steps.column("vel_x_m_s", body)),
         vz(steps.column("vel_z_m_s", body)),
         contacts(steps.column("contacts", body)),
-        tilt(steps.column("tilt_deg", body)) {}
+        tilt(steps.column("tilt_deg", body)) {
+    const std::vector<double> behaviors = steps.column("behavior", body);
+    const auto before = std::lower_bound(behaviors.begin(), behaviors.end(), behavior) - behaviors.begin();
+    for (std::vector<double>* values : {&t, &x, &y, &z, &vx, &vz, &contacts, &tilt})
+      values->erase(values->begin(), values->begin() + before);
+  }
 
   double level_distance(std::size_t i, const Eigen::Vector3d& place, bool planar) const {
     return planar ? std::abs(x[i] - place.x()) : std::hypot(x[i] - place.x(), z[i] - place.z());
@@ -50,71 +55,93 @@ struct Track {
   }
 };
 
-std::string travels_by(const Value& body) {
-  for (const auto& [path, settings] : behaviors_of(body)) {
-    for (const std::string gait : {"hop", "walk", "roll"}) {
-      const bool controller = settings.has("type") && settings["type"].as_string() == gait;
-      if (controller || path.ends_with("." + gait)) return gait;
-    }
+// Of the middle of its vertices over the lowest one, m.
+double rise(const RowMatrixXd& V) { return V.col(1).mean() - V.col(1).minCoeff(); }
+
+// "hop" of "behavior[2].hop", and of a controller its type.
+std::string name_of(const std::pair<std::string, Value>& behavior) {
+  const auto& [path, settings] = behavior;
+  return settings.has("type") ? settings["type"].as_string() : path.substr(path.rfind('.') + 1);
+}
+
+// Without end along the heading that it has by itself.
+bool goes_on(const Value& travel) {
+  for (const char* speed : {"pace", "speed"}) {
+    if (travel.has(speed) && travel[speed].as_number() > 0) return true;
   }
-  return {};
+  return false;
 }
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> destination(const Value& body) {
+std::optional<Destination> destination(const Value& body) {
   const auto behaviors = behaviors_of(body);
-  for (auto behavior = behaviors.rbegin(); behavior != behaviors.rend(); ++behavior) {
-    const Value& settings = behavior->second;
-    if (settings.has("to")) return settings["to"].as_vector3();
-    if (settings.has("path")) return settings["path"].items().back().as_vector3();
-    for (const char* endless : {"heading_deg", "chase", "flee"}) {
-      if (settings.has(endless)) return std::nullopt;
-    }
+  for (std::size_t i = behaviors.size(); i-- > 0;) {
+    const Value& settings = behaviors[i].second;
+    if (settings.has("to")) return Destination{settings["to"].as_vector3(), static_cast<int>(i)};
+    if (settings.has("path"))
+      return Destination{settings["path"].items().back().as_vector3(), static_cast<int>(i)};
+    if (settings.has("heading_deg") || settings.has("chase") || settings.has("flee") || goes_on(settings))
+      return std::nullopt;
   }
   return std::nullopt;
 }
 
-Arrival judge_arrival(const Value& body, const Eigen::Vector3d& place, const StepTable& steps, double gravity,
-                      const RowMatrixXd& rest, const RowMatrixXd& last) {
-  const Track track(steps, body["name"].as_string());
+Arrival judge_arrival(const Value& body, const Destination& destination, const StepTable& steps,
+                      double gravity, const RowMatrixXd& rest, const RowMatrixXd& last) {
+  const std::string& name = body["name"].as_string();
+  const Eigen::Vector3d& place = destination.place;
   const bool planar = rest.cols() == 2;
   const Eigen::RowVectorXd size = rest.colwise().maxCoeff() - rest.colwise().minCoeff();
   const double height = size[1], width = planar ? size[0] : std::max(size[0], size[2]);
   Arrival arrival{place, 0, false, {}};
-  if (track.t.empty()) return arrival;
+  const Track whole(steps, name, 0);
+  if (whole.t.empty()) return arrival;
+  arrival.missing = whole.level_distance(whole.t.size() - 1, place, planar);
+
+  std::vector<std::string>& reasons = arrival.reasons;
+  const auto behaviors = behaviors_of(body);
+  const Track track(steps, name, destination.behavior);
+  if (track.t.empty()) {
+    const auto& [path, settings] =
+        behaviors.at(static_cast<std::size_t>(steps.column("behavior", name).back()));
+    reasons.push_back("the clip ended before it set out, at " + path +
+                      (settings.has("until") ? " until " + settings["until"].as_string() : ""));
+    return arrival;
+  }
   const std::size_t end = track.t.size() - 1;
-  arrival.missing = track.level_distance(end, place, planar);
   const bool near = arrival.missing <= kNear * width;
-  const double above = place.y() - last.col(1).maxCoeff();
+  // On the way down a place may be above its head that was not so at first.
+  const double above = place.y() - std::max(last.col(1).maxCoeff(), rest.col(1).maxCoeff());
   arrival.arrived = near && above <= 0;
   if (arrival.arrived) return arrival;
 
-  std::vector<std::string>& reasons = arrival.reasons;
-  const double sunken = track.y.front() - track.y[end];
-  const bool on_ground = track.contacts[end] > 0;
-  if (!on_ground && sunken > kDropped * height) {
-    reasons.push_back(words("it fell off what it stood on, by %.1f m", sunken));
+  const auto stands = [](double contacts) { return contacts > 0; };
+  const auto stood = std::find_if(whole.contacts.rbegin(), whole.contacts.rend(), stands);
+  if (stood == whole.contacts.rend()) {
+    reasons.emplace_back("it touched no ground");
+    return arrival;
+  }
+  const double fallen_by =
+      whole.y[static_cast<std::size_t>(whole.contacts.rend() - stood) - 1] - whole.y.back();
+  if (fallen_by > kDropped * height) {
+    reasons.push_back(words("it fell off what it stood on, by %.1f m", fallen_by));
     return arrival;
   }
   if (above > 0) {
     reasons.push_back(words("the place is %.2f m above its head, and it travels on the ground", above));
   }
   if (near) return arrival;
-  const std::string gait = travels_by(body);
+  const std::string gait = name_of(behaviors.at(static_cast<std::size_t>(destination.behavior)));
   const auto fallen =
       std::find_if(track.tilt.begin(), track.tilt.end(), [](double tilt) { return tilt > kFallen; });
+  const double sunken = rise(rest) - rise(last);
   if (gait != "roll" && fallen != track.tilt.end()) {
     const auto step = static_cast<std::size_t>(fallen - track.tilt.begin());
     reasons.push_back(words("it fell over at %.1f s", track.t[step]));
-  }
-  const bool touched =
-      std::any_of(track.contacts.begin(), track.contacts.end(), [](double c) { return c > 0; });
-  if (!touched) {
-    reasons.emplace_back("it touched no ground");
-  } else if (on_ground && sunken > kSunken * height) {
+  } else if (stands(track.contacts[end]) && sunken > kSunken * height) {
     reasons.push_back(
-        words("its centre of mass sank by %.0f %% of its height: its material is too soft to hold it up",
+        words("its centre sank by %.0f %% of its height: its material is too soft to hold it up",
               100 * sunken / height));
   } else if (const double grip = track.grip(gravity); grip < kNoHold) {
     reasons.push_back(words(
@@ -122,8 +149,7 @@ Arrival judge_arrival(const Value& body, const Eigen::Vector3d& place, const Ste
         "friction",
         100 * grip));
   }
-  if (gait == "hop" &&
-      std::all_of(track.contacts.begin(), track.contacts.end(), [](double c) { return c > 0; }))
+  if (gait == "hop" && std::all_of(track.contacts.begin(), track.contacts.end(), stands))
     reasons.emplace_back("it never left the ground");
   if (!reasons.empty()) return arrival;
 

@@ -20,12 +20,17 @@ struct Arrival {
   std::vector<std::string> reasons;  // why not, in words
 };
 
-// The place where the last travel of a body's controller or script ends; nothing when it ends nowhere.
-std::optional<Eigen::Vector3d> destination(const Value& body);
+struct Destination {
+  Eigen::Vector3d place;  // m
+  int behavior = 0;       // that leads there, from 0
+};
 
-// `rest` and `last`: the body at rest and in the last frame (#V by d, m). `gravity` in m/s².
-Arrival judge_arrival(const Value& body, const Eigen::Vector3d& place, const StepTable& steps, double gravity,
-                      const RowMatrixXd& rest, const RowMatrixXd& last);
+// Where the last travel of a body's controller or script ends; nothing when it ends nowhere.
+std::optional<Destination> destination(const Value& body);
+
+// `rest` and `last`: the body as placed in the scene and in the last frame (#V by d, m). `gravity` in m/s².
+Arrival judge_arrival(const Value& body, const Destination& destination, const StepTable& steps,
+                      double gravity, const RowMatrixXd& rest, const RowMatrixXd& last);
 
 // "cup: did not arrive at [2, 0, 1]: 1.20 m short; it fell over at 2.3 s".
 std::string describe(const std::string& body, const Arrival& arrival);

@@ -1,5 +1,8 @@
 #include "pipeline/body_shape.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/error.h"
 #include "common/log.h"
 #include "meshing/extrude.h"
@@ -18,6 +21,7 @@ namespace {
 // A point this far outside its element exaggerates the motion (meshing/embedding.h).
 constexpr double kFarOutside = 2;
 constexpr int kFlatVertices = 80;
+constexpr double kSlender = 50;  // how many times as long as wide a triangle of a shell may be
 
 void warn_of_far_points(const std::string& name, const meshing::Embedding& embedding, const char* key) {
   if (embedding.largest_weight() <= kFarOutside) return;
@@ -26,6 +30,20 @@ void warn_of_far_points(const std::string& name, const meshing::Embedding& embed
       ": parts of the drawn surface lie far outside the simulation mesh and will exaggerate its motion; "
       "raise " +
       key);
+}
+
+// How many times as long as wide the most slender triangle is.
+double slenderness(const SimMesh& mesh) {
+  const Eigen::VectorXd area = element_sizes(mesh);
+  double most = 0;
+  for (Eigen::Index f = 0; f < mesh.E.rows(); ++f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest =
+          std::max(longest, (mesh.V.row(mesh.E(f, k)) - mesh.V.row(mesh.E(f, (k + 1) % 3))).squaredNorm());
+    most = std::max(most, longest / (2 * area[f]));
+  }
+  return most;
 }
 
 // Meshed before it is placed: an asset has the same simulation mesh wherever it stands.
@@ -57,6 +75,11 @@ BodyShape make_shell(const Scene& scene, const Value& body) {
   const meshing::ShellMesh shell =
       meshing::shell_mesh(surface, wanted.is_null() ? 0 : static_cast<int>(wanted.as_integer()));
   for (const std::string& note : shell.notes) log_info(body["name"].as_string() + ": " + note);
+  if (const double times = slenderness({shell.mesh.V, shell.mesh.F}); times > kSlender) {
+    log_warning(body["name"].as_string() + ": triangles of the shell are up to " +
+                std::to_string(std::lround(times)) +
+                " times as long as wide and will hardly bend or not be solved; set triangles.vertices");
+  }
   meshing::SkinnedSurface skinned =
       meshing::thick_shell(surface, shell.mesh.V, shell.mesh.F, body["model"]["thickness"].as_number());
   BodyShape shape;

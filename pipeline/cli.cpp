@@ -43,7 +43,7 @@ struct CommonOptions {
     CLI::Option* v = command.add_flag("-v,--verbose", verbose, "Say more");
     command.add_flag("-q,--quiet", quiet, "Say only what went wrong")->excludes(v);
   }
-  LogLevel level() const { return verbose ? LogLevel::debug : quiet ? LogLevel::error : LogLevel::info; }
+  LogLevel level() const { return verbose ? LogLevel::debug : quiet ? LogLevel::warning : LogLevel::info; }
 };
 
 void add_scene_options(CLI::App& command, SceneCommand& options) {

@@ -115,7 +115,7 @@ int run_stages_command(const SceneCommand& command, const std::string& last_stag
     print_errors(errors);
     return exit_code(errors.front().kind());
   }
-  if (!command.quiet) print_warnings(*scene);
+  print_warnings(*scene);
   Job job{*scene, command.out.empty() ? std::filesystem::path("out") / scene->name : command.out,
           command.frames.empty() ? all_frames(scene->frame_count)
                                  : parse_frames(command.frames, scene->frame_count),

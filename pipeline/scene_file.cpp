@@ -22,6 +22,7 @@
 #include "render/scene.h"
 #include "sim/control/behavior.h"
 #include "sim/control/controllers/pose.h"
+#include "sim/control/controllers/goals.h"
 #include "sim/control/controllers/turn.h"
 #include "sim/control/course.h"
 #include "sim/elastic/models.h"
@@ -199,9 +200,15 @@ class SemanticCheck {
         const bool planar = is_planar(body_kind(bodies[i]));
         sim::check_course(settings, where + "." + part, planar, errors_);
         sim::check_turn(settings, where + "." + part, planar, errors_);
+        sim::check_goals(settings, where + "." + part, errors_);
         sim::check_example(settings, where + "." + part, examples, errors_);
         attempt(settings, [&] {
-          for (const Value& other : sim::looked_at(settings)) body_exists(other, where + "." + part);
+          for (const auto& [key, other] : sim::looked_at(settings)) {
+            const std::string who = where + "." + part + "." + key;
+            body_exists(other, who);
+            if (other.as_string() == bodies[i]["name"].as_string())
+              fail(other, who + " = " + other.as_string() + " is the body itself", "name another body");
+          }
         });
       }
       for (const Value& example : examples_of(bodies[i])) {

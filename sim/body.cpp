@@ -273,6 +273,7 @@ void Body::finish_record(long step, const std::vector<Collider>& colliders, Step
   record.t = static_cast<double>(step) * settings_.h;
   record.body = model_.name;
   record.phase = controller_->phase();
+  record.behavior = controller_->behavior();
   record.p_norm = p().norm();
   record.contacts +=
       static_cast<int>(std::count_if(state_.contacts.begin(), state_.contacts.end(),

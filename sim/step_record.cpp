@@ -11,7 +11,7 @@ std::string csv_header() {
          "contacts,"
          "max_penetration_m,min_clearance_m,min_element_ratio,kinetic_j,elastic_j,tilt_deg,guards,substeps,"
          "handle_force_x_n,handle_force_y_n,handle_force_z_n,phase,rest_rate_per_s,min_rest_element_ratio,"
-         "rest_volume_ratio\n";
+         "rest_volume_ratio,behavior\n";
 }
 
 std::string csv_line(const StepRecord& r) {
@@ -33,7 +33,7 @@ std::string csv_line(const StepRecord& r) {
   for (int axis = 0; axis < 3; ++axis) add(r.handle_force[axis]);
   line += ',' + r.phase;
   for (const double value : {r.rest_rate, r.min_rest_element_ratio, r.rest_volume_ratio}) add(value);
-  return line + '\n';
+  return line + ',' + std::to_string(r.behavior) + '\n';
 }
 
 }  // namespace vivify::sim

@@ -41,6 +41,7 @@ struct StepRecord {
   double rest_rate = 0;
   double min_rest_element_ratio = 1;  // smallest V/V̄ (of rods and shells: L/L̄)
   double rest_volume_ratio = 1;       // ΣV/ΣV̄ (of rods ΣL/ΣL̄, of shells ΣL²/ΣL̄², which goes as the area)
+  int behavior = 0;                   // which one of its script the body follows, from 0
 };
 
 std::string csv_header();                        // one line, with the newline

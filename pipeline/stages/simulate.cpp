@@ -178,12 +178,12 @@ std::string summarize(const Job& job, const std::string& csv) {
         {"min_rest_element_ratio", smallest(steps.column("min_rest_element_ratio", name))},
         {"min_rest_volume_ratio", smallest(steps.column("rest_volume_ratio", name))},
         {"max_rest_volume_ratio", largest(steps.column("rest_volume_ratio", name))}};
-    if (const std::optional<Eigen::Vector3d> place = destination(body)) {
+    if (const std::optional<Destination> goal = destination(body)) {
       const RowMatrixXd rest = Hdf5Reader(job.out / mesh_file(body)).matrix("/X0");
       const double gravity = job.scene.settings["gravity"].as_vector3().norm();
       const Arrival arrival =
-          judge_arrival(body, *place, steps, gravity, rest, last.matrix("/bodies/" + name + "/x"));
-      summary["bodies"][name]["arrival"] = {{"place", {place->x(), place->y(), place->z()}},
+          judge_arrival(body, *goal, steps, gravity, rest, last.matrix("/bodies/" + name + "/x"));
+      summary["bodies"][name]["arrival"] = {{"place", {goal->place.x(), goal->place.y(), goal->place.z()}},
                                             {"arrived", arrival.arrived},
                                             {"missing_m", arrival.missing},
                                             {"reasons", arrival.reasons}};

@@ -13,6 +13,7 @@ struct Behavior {
   std::unique_ptr<Controller> controller;
   std::optional<double> duration;  // s
   std::string until;               // a body that has arrived
+  bool has_condition() const { return duration || !until.empty(); }
 };
 
 class Script final : public Controller {
@@ -20,15 +21,20 @@ class Script final : public Controller {
   Script(std::vector<Behavior> behaviors, double h) : behaviors_(std::move(behaviors)), h_(h) {}
 
   std::vector<Goal> goals(const Observation& now) override {
-    if (!is_last() && has_ended(now.others)) {
+    ended_ = has_ended(now.others);
+    if (ended_ && !is_last()) {
       ++index_;
       steps_ = 0;
+      ended_ = false;
     }
     ++steps_;
     return current().goals(now);
   }
 
-  bool arrived() const override { return is_last() && current().arrived(); }
+  bool arrived() const override {
+    return is_last() && (behaviors_[index_].has_condition() ? ended_ : current().arrived());
+  }
+  int behavior() const override { return static_cast<int>(index_); }
   bool passive() const override { return current().passive(); }
   std::optional<Eigen::VectorXd> rest_parameters(double) const override {
     return current().rest_parameters(time());
@@ -37,14 +43,15 @@ class Script final : public Controller {
 
   Eigen::VectorXd state() const override {
     const Eigen::VectorXd inner = current().state();
-    Eigen::VectorXd state(2 + inner.size());
-    state << static_cast<double>(index_), static_cast<double>(steps_), inner;
+    Eigen::VectorXd state(3 + inner.size());
+    state << static_cast<double>(index_), static_cast<double>(steps_), ended_, inner;
     return state;
   }
   void restore(const Eigen::VectorXd& state) override {
     index_ = static_cast<std::size_t>(state[0]);
     steps_ = static_cast<long>(state[1]);
-    current().restore(state.tail(state.size() - 2));
+    ended_ = state[2] != 0;
+    current().restore(state.tail(state.size() - 3));
   }
 
  private:
@@ -59,13 +66,14 @@ class Script final : public Controller {
       return std::any_of(others.begin(), others.end(),
                          [&](const OtherBody& other) { return other.name == now.until && other.arrived; });
     }
-    return !now.duration && now.controller->arrived();
+    return !now.has_condition() && now.controller->arrived();
   }
 
   std::vector<Behavior> behaviors_;
   double h_;
   std::size_t index_ = 0;
-  long steps_ = 0;  // of the present behaviour
+  long steps_ = 0;      // of the present behaviour
+  bool ended_ = false;  // the present behaviour; the last one goes on
 };
 
 constexpr std::string_view kArrived = ".arrived";
@@ -85,7 +93,7 @@ std::string waited_for(const Value& behavior) {
 Schema behavior_schema() {
   Schema behavior = one_of(
       "A behaviour: the name of a controller with its settings. It ends when the controller has "
-      "arrived, or as `for_s` and `until` say; the last one never ends.");
+      "arrived or, when they are given, as `for_s` and `until` say. The last one goes on after its end.");
   for (const ControllerEntry& entry : controllers()) {
     behavior = std::move(behavior).option(
         std::string(entry.name),
@@ -98,14 +106,14 @@ Schema behavior_schema() {
               std::move(behavior));
 }
 
-std::vector<Value> looked_at(const Value& settings) {
-  std::vector<Value> names;
+std::vector<std::pair<std::string, Value>> looked_at(const Value& settings) {
+  std::vector<std::pair<std::string, Value>> names;
   for (const char* key : {"chase", "flee", "towards"}) {
-    if (settings.has(key)) names.push_back(settings[key]);
+    if (settings.has(key)) names.emplace_back(key, settings[key]);
   }
   if (const std::string other = waited_for(settings); !other.empty()) {
-    names.push_back(Value::string(other));
-    names.back().set_where(settings["until"].where());
+    names.emplace_back("until", Value::string(other));
+    names.back().second.set_where(settings["until"].where());
   }
   return names;
 }

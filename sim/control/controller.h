@@ -64,6 +64,9 @@ class Controller {
   // Whether the body asks for nothing and never changes its rest shape.
   virtual bool passive() const { return false; }
 
+  // Which behaviour of a script it follows, from 0.
+  virtual int behavior() const { return 0; }
+
   // What the controller is doing, for people: "thrust".
   virtual std::string phase() const = 0;
 

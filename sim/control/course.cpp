@@ -43,7 +43,7 @@ Schema add_course(Schema controller) {
              number("Direction of travel, without end: 0 is +z, 90 is +x. Without a course: 0, or "
                     "90 for a body of the plane.")
                  .unit("°"))
-      .field("to", vector("Place to travel to; its height does not matter.", 3).unit("m"))
+      .field("to", vector("Place on the ground to travel to, however high that is.", 3).unit("m"))
       .field("path",
              list("Places to travel to, one after the other.", vector("A place.", 3).unit("m").required())
                  .items_at_least(1))
@@ -112,7 +112,7 @@ Course::Way Course::way(const Eigen::Vector3d& centre, double ahead, const Other
 }
 
 // Pure pursuit (Coulter 1992): towards the point of the path that lies `ahead` m further than the nearest
-// one.
+// one. Where the path turns back it is followed to its corner: beyond, that point may be where the body is.
 Course::Way Course::along_path(const Eigen::Vector3d& centre, double ahead) {
   const int last = static_cast<int>(path_.size()) - 1;
   const auto progress = [&] {  // along the present leg, m
@@ -126,8 +126,10 @@ Course::Way Course::along_path(const Eigen::Vector3d& centre, double ahead) {
   double reach = last == 0 ? std::numeric_limits<double>::infinity() : progress() + ahead;
   for (int leg = leg_; leg <= last; start = path_[leg++]) {
     const Eigen::Vector3d whole = level(path_[leg] - start);
-    aim = start + whole.normalized() * std::clamp(reach, 0.0, whole.norm());
-    if (reach <= whole.norm()) break;
+    const bool turns_back = leg < last && whole.dot(level(path_[leg + 1] - path_[leg])) < 0;
+    const double farthest = turns_back ? std::max(reach, whole.norm()) : whole.norm();
+    aim = start + whole.normalized() * std::clamp(reach, 0.0, farthest);
+    if (turns_back || reach <= whole.norm()) break;
     reach -= whole.norm();
   }
   const Eigen::Vector3d towards = level(aim - centre);

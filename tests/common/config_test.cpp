@@ -240,7 +240,7 @@ TEST(ApplyOverride, RefusesWhatDoesNotFit) {
   for (const char* bad :
        {"frames", "=1", "frames.=1", ".fps=1", "frames..fps=1", "bodies[0=1", "bodies[]=1", "bodies[0]x=1",
         "frames.fps.x=1", "bodies.2.name=a", "bodies.jug.name=a", "bodies[-1].name=a", "frames.fps=[1",
-        "frames.fps=010", "frames.fps={a: 1, a: 2}"}) {
+        "frames.fps=010", "frames.fps={a: 1, a: 2}", "gravity.1=-1"}) {
     ConfigNode root = parse(kScene);
     try {
       apply_override(root, bad);

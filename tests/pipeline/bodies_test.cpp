@@ -448,21 +448,41 @@ TEST(Check, RefusesHeadingsOutOfThePlane) {
   EXPECT_THAT(outcome.err, HasSubstr("90 is to the right"));
 }
 
+TEST(Shells, WarnOfSlenderTriangles) {
+  const BodyScene scene({"mesh: sliver.obj", "model: {type: shell3d}", "rest_space: {type: full}"});
+  scene.write("sliver.obj", "v 0 1 0\nv 1 1 0\nv 0.5 1.01 0\nv 0.5 2 0\nf 1 2 3\nf 1 3 4\nf 3 2 4\n");
+  const Outcome outcome = scene.run("mesh", scene.out());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("warning: body: triangles of the shell are up to 100 times as long as wide"));
+  const Outcome remeshed =
+      scene.run("mesh", scene.out("again"), {"--set", "bodies.body.triangles.vertices=40"});
+  EXPECT_EQ(remeshed.code, 0) << remeshed.err;
+  EXPECT_THAT(remeshed.err, testing::Not(HasSubstr("as long as wide")));
+}
+
 TEST(Check, ReadsScripts) {
   const BodyScene scene(
       {kLetter, "model: {type: solid2d}",
        "behavior: [{hop: {to: [1, 0, 0], heading_deg: 90}}, {roll: {chase: nobody}},"
        " {wait: {until: no_one.arrived}}, {hop: {heading_deg: 20}}, {wait: {until: soon}},"
-       " {turn: {by_deg: 90}}, {pose: {example: bow}}]"});
+       " {turn: {by_deg: 90}}, {pose: {example: bow}},"
+       " {goals: {period_s: 1, goals: [{along: [0, 0, 0], keys: [{t: 2}, {t: 1}]}]}}, {hop: {flee: body}}]"});
   const Outcome outcome = vivify({"check", scene.file().string()});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[0].hop.heading_deg and .to are two courses"));
-  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[1].roll = nobody: there is no such body"));
-  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[2].wait = no_one: there is no such body"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[1].roll.chase = nobody: there is no such body"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[2].wait.until = no_one: there is no such body"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[3].hop.heading_deg leads out of the plane"));
   EXPECT_THAT(outcome.err, HasSubstr("until = soon must be NAME.arrived"));
   EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[5].turn: a body of the plane cannot turn"));
-  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[6].pose.example = bow: the body has no such example"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("bodies[0].behavior[6].pose.example = bow: the body has no such example"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[7].goals.goals[0].along must not be 0"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[7].goals.goals[0].keys has a time after period_s"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("bodies[0].behavior[7].goals.goals[0].keys must be in the order of time"));
+  EXPECT_THAT(outcome.err, HasSubstr("bodies[0].behavior[8].hop.flee = body is the body itself"));
   const BodyScene both({kLetter, "model: {type: solid2d}", "controller: {type: hop}", "behavior: [wait:]"});
   EXPECT_THAT(vivify({"check", both.file().string()}).err,
               HasSubstr("bodies[0].controller and .behavior both say what the body does"));

@@ -7,6 +7,7 @@
 
 #include "common/file.h"
 #include "tests/common/temporary_folder.h"
+#include "tests/pipeline/guides.h"
 #include "tests/pipeline/program.h"
 
 namespace vivify::pipeline {
@@ -14,30 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing_support::fenced_blocks;
 using testing_support::Outcome;
 using testing_support::ProgramOptions;
 using testing_support::TemporaryFolder;
 using testing_support::vivify;
+using testing_support::write_guide_scenes;
 
 const fs::path kSource = VIVIFY_SOURCE_DIR;
-
-// Contents of the fenced blocks of one language in a Markdown file.
-std::vector<std::string> fenced_blocks(const fs::path& file, const std::string& language) {
-  std::istringstream lines(read_text_file(file));
-  std::vector<std::string> blocks;
-  bool inside = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (!inside && line == "```" + language) {
-      inside = true;
-      blocks.emplace_back();
-    } else if (inside && line == "```") {
-      inside = false;
-    } else if (inside) {
-      blocks.back() += line + "\n";
-    }
-  }
-  return blocks;
-}
 
 // A folder that looks like a clone: the shipped assets and scenes, and the scene that the README tells people
 // to save.
@@ -100,32 +85,22 @@ TEST(Docs, SmallestSceneRuns) {
   EXPECT_GT(fs::file_size(clone / "out/small/small.mp4"), 500u);
 }
 
-// Scenes without their first line, and files beside them that begin with their name.
 TEST(Docs, ScenesOfTheGuidesAreRight) {
   const TemporaryFolder clone;
   make_clone(clone);
-  ProgramOptions options;
-  options.folder = clone.path();
-  int scenes = 0;
-  for (const char* file : {"docs/user_guide.md", "docs/directing.md"}) {
-    for (const std::string& block : fenced_blocks(kSource / file, "yaml")) {
-      if (block.starts_with("# ")) {
-        write_file_atomic(clone / "configs" / block.substr(2, block.find('\n') - 2), block);
-        continue;
-      }
-      write_file_atomic(clone / "configs/guide.yaml", "version: 1\n" + block);
-      const Outcome outcome = vivify({"check", "configs/guide.yaml"}, options);
-      EXPECT_EQ(outcome.code, 0) << block << outcome.err;
-      EXPECT_EQ(outcome.err, "") << block;
-      ++scenes;
-    }
+  const std::vector<fs::path> scenes = write_guide_scenes(clone.path());
+  EXPECT_GE(scenes.size(), 12);
+  for (const fs::path& scene : scenes) {
+    const Outcome outcome = vivify({"check", scene.string()});
+    EXPECT_EQ(outcome.code, 0) << read_text_file(scene) << outcome.err;
+    EXPECT_EQ(outcome.err, "") << read_text_file(scene);
   }
-  EXPECT_GE(scenes, 4);
 }
 
 TEST(Docs, LinksLeadSomewhere) {
   const std::regex link(R"(\]\(([^)#]+)\))");
-  for (const char* file : {"README.md", "CHANGELOG.md", "docs/user_guide.md", "docs/directing.md", "docs/reference.md"}) {
+  for (const char* file :
+       {"README.md", "CHANGELOG.md", "docs/user_guide.md", "docs/directing.md", "docs/reference.md"}) {
     const std::string text = read_text_file(kSource / file);
     for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
       const std::string target = (*it)[1];

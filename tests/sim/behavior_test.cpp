@@ -76,8 +76,25 @@ TEST(Behavior, WaitsForOthersAndArrives) {
   EXPECT_TRUE(actor.script->arrived()) << "the last one goes on";
 }
 
+TEST(Behavior, TheLastOneArrivesAsItsConditionSaysAndGoesOn) {
+  Actor timed("[{wait: {for_s: 0.02}}, {wait: {for_s: 0.1}}]"), other("[{wait: {until: ball.arrived}}]");
+  std::vector<OtherBody> others = {{"ball", {0, 0, 0}, false}};
+  for (int step = 0; step < 7; ++step) {
+    EXPECT_FALSE(timed.script->arrived()) << step;
+    timed.step();
+    other.step(others);
+  }
+  EXPECT_TRUE(timed.script->arrived());
+  EXPECT_EQ(timed.script->behavior(), 1);
+  EXPECT_EQ(timed.script->phase(), "stand");
+  EXPECT_FALSE(other.script->arrived());
+  others[0].arrived = true;
+  other.step(others);
+  EXPECT_TRUE(other.script->arrived());
+}
+
 TEST(Behavior, RestoredScriptsGoOnAlike) {
-  const std::string yaml = "[{wait: {for_s: 0.1}}, {hop: {to: [1, 0, 0]}}]";
+  const std::string yaml = "[{wait: {for_s: 0.1}}, {hop: {to: [1, 0, 0], for_s: 0.2}}]";
   Actor a(yaml), b(yaml);
   for (int step = 0; step < 11; ++step) a.step();
   b.script->restore(a.script->state());
@@ -89,8 +106,9 @@ TEST(Behavior, RestoredScriptsGoOnAlike) {
 
 TEST(Behavior, TellsWhomItLooksAt) {
   const Value script = script_of("[{hop: {chase: mouse}}, {wait: {until: cat.arrived}}]");
-  EXPECT_EQ(looked_at(script.items()[0]["hop"]).at(0).as_string(), "mouse");
-  EXPECT_EQ(looked_at(script.items()[1]["wait"]).at(0).as_string(), "cat");
+  const auto seen = looked_at(script.items()[0]["hop"]), awaited = looked_at(script.items()[1]["wait"]);
+  EXPECT_EQ(seen.at(0).first + " " + seen.at(0).second.as_string(), "chase mouse");
+  EXPECT_EQ(awaited.at(0).first + " " + awaited.at(0).second.as_string(), "until cat");
   try {
     Actor actor("[{wait: {until: cat.gone}}]");
     FAIL();

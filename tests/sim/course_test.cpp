@@ -76,6 +76,28 @@ TEST(Course, FollowsAPathAroundItsCorners) {
   EXPECT_LT(length, 11.2);
 }
 
+TEST(Course, FollowsAPathThatTurnsBack) {
+  Course out_and_back = Traveller("{path: [[2, 0, 0], [0, 0, 0]]}", true).course;
+  Course acute = Traveller("{path: [[2, 0, 0], [0, 0, 0.5]]}").course;
+  for (Course* course : {&out_and_back, &acute}) {
+    Place at(0, 0.5, 0);
+    double farthest = 0;
+    int steps = 0;
+    for (Course::Way way = course->way(at, 0.7, {}); !course->ends(way) && steps < 1000; ++steps) {
+      at += 0.02 * way.forward;
+      farthest = std::max(farthest, at.x());
+      way = course->way(at, 0.7, {});
+    }
+    EXPECT_NEAR(farthest, 2, 0.03);
+    EXPECT_NEAR(at.x(), 0, 0.16);
+    EXPECT_LT(steps, 220);
+  }
+  // Beside the corner it goes on along the line, and not round the corner for ever.
+  Course aside = Traveller("{path: [[2, 0, 0], [0, 0, 0]]}").course;
+  aside.way({0, 0, 0}, 0.7, {});
+  EXPECT_GT(aside.way({1.95, 0, 0.2}, 0.7, {}).forward.x(), 0.9);
+}
+
 TEST(Course, ChasesAndFlees) {
   const std::vector<OtherBody> others = {{"mouse", {0, 0, 2}, false}, {"cat", {0, 0, -2}, false}};
   Course cat = Traveller("{chase: mouse}").course, mouse = Traveller("{flee: cat}").course;

@@ -135,15 +135,36 @@ Schema goals_controller_schema() {
       .field("period_s", number("After this time the keys begin again.").unit("s").above(0));
 }
 
+void check_goals(const Value& settings, const std::string& where, std::vector<Error>& errors) {
+  if (!settings.has("goals")) return;
+  const std::vector<Value>& goals = settings["goals"].items();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto fail = [&](const Value& part, const std::string& message, const std::string& hint) {
+      errors.emplace_back(ErrorKind::usage, where + ".goals[" + std::to_string(i) + "]" + message, hint,
+                          part.where());
+    };
+    const Value& along = goals[i]["along"];
+    if (along.as_vector3().norm() == 0) fail(along, ".along must not be 0", "give a direction");
+    double last = -1;
+    for (const Value& key : goals[i]["keys"].items()) {
+      const double t = key["t"].as_number();
+      if (t <= last) fail(key, ".keys must be in the order of time", "let each t be after the one before it");
+      if (settings.has("period_s") && t > settings["period_s"].as_number())
+        fail(key, ".keys has a time after period_s, when the keys begin again", "make the period longer");
+      last = t;
+    }
+  }
+}
+
 std::unique_ptr<Controller> make_goals_controller(const ControlledBody& body, const Value& settings) {
+  std::vector<Error> errors;
+  check_goals(settings, "the controller", errors);
+  if (!errors.empty()) throw errors.front();
   std::vector<KeyedGoal> goals;
   for (const Value& item : settings["goals"].items()) {
     KeyedGoal& goal = goals.emplace_back();
     goal.of = item["of"].as_string();
     goal.along = item["along"].as_vector3();
-    if (goal.along.norm() == 0) {
-      throw Error(ErrorKind::usage, "goals[].along must not be 0", "give a direction", item["along"].where());
-    }
     goal.along.normalize();
     const RowMatrixXd V = Eigen::Map<const RowMatrixXd>(body.rest.data(), body.mass.size(), body.dimension());
     const Region part =
@@ -154,8 +175,6 @@ std::unique_ptr<Controller> make_goals_controller(const ControlledBody& body, co
     goal.frequency = item["frequency"].as_number();
     for (const Value& key : item["keys"].items()) {
       goal.keys.push_back({key["t"].as_number(), key["value"].as_number(), key["rate"].as_number()});
-      if (goal.keys.size() > 1 && !(goal.keys.back().t > goal.keys[goal.keys.size() - 2].t))
-        throw Error(ErrorKind::usage, "keys must be in the order of time", "", key.where());
     }
   }
   std::optional<double> period;
