@@ -495,9 +495,14 @@ class Resolver {
 
   Value resolve_one_of(const Schema& schema, const ConfigNode& node, const std::string& path) {
     if (node.kind != ConfigNode::Kind::map || node.entries.size() != 1) {
-      wrong_type(
-          schema, node, path,
-          node.entries.size() > 1 ? "indent the settings of " + node.entries[0].key + " below it" : "");
+      std::string hint;
+      if (node.entries.size() > 1) {
+        const std::string &first = node.entries[0].key, &second = node.entries[1].key;
+        hint = find(schema.options, second) != nullptr
+                   ? "give " + second + " after " + first + ", as an item of its own"
+                   : "indent the settings of " + first + " below it";
+      }
+      wrong_type(schema, node, path, hint);
       return {};
     }
     const ConfigNode::Entry& entry = node.entries.front();

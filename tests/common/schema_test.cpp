@@ -13,6 +13,7 @@
 namespace vivify {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing_support::sample_scene;
@@ -100,10 +101,12 @@ TEST(Resolve, ReadsOneOfSeveralByItsKey) {
 
   EXPECT_THAT(
       read(with("[{wlak: {}}]")).errors,
-      ElementsAre(
-          "s.yaml:3:77: error: unknown key 'wlak' in bodies[0].steps[0] (did you mean walk?)"));
-  EXPECT_THAT(read(with("[{walk: {}, speed: 3}]")).errors,
-              ElementsAre(HasSubstr("must be one of walk or wait")));
+      ElementsAre("s.yaml:3:77: error: unknown key 'wlak' in bodies[0].steps[0] (did you mean walk?)"));
+  EXPECT_THAT(
+      read(with("[{walk: {}, speed: 3}]")).errors,
+      ElementsAre(AllOf(HasSubstr("must be one of walk or wait"), HasSubstr("indent the settings of walk"))));
+  EXPECT_THAT(read(with("[{walk: {}, wait: {}}]")).errors,
+              ElementsAre(HasSubstr("(give wait after walk, as an item of its own)")));
   EXPECT_THAT(read(with("[walk]")).errors, ElementsAre(HasSubstr("found 'walk'")));
   EXPECT_THAT(read(with("[{wait: {}}]")).errors, ElementsAre(HasSubstr("steps[0].wait.for_s is missing")));
 }
