@@ -437,10 +437,11 @@ class Resolver {
       if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
       std::string hint = meant(entry.key, known);
       if (hint.empty() && variant != nullptr) {
+        std::vector<std::string> owners;
         for (const auto& [name, option] : variant->options) {
-          if (find(option.fields, entry.key) != nullptr)
-            hint = "it is a key of " + variant->tag + ": " + name;
+          if (find(option.fields, entry.key) != nullptr) owners.push_back(name);
         }
+        if (!owners.empty()) hint = "it is a key of " + variant->tag + ": " + join_words(owners, "or");
       }
       if (hint.empty() && known.size() <= 16) hint = "known keys: " + join_words(known);
       problem(entry.key_where, "unknown key '" + entry.key + "'" + (path.empty() ? "" : " in " + path), hint);

@@ -461,6 +461,13 @@ TEST(Shells, WarnOfSlenderTriangles) {
   EXPECT_THAT(remeshed.err, testing::Not(HasSubstr("as long as wide")));
 }
 
+TEST(Check, NamesTheControllersThatHaveAKey) {
+  const BodyScene scene({kLetter, "model: {type: solid2d}", "controller: {heading_deg: 90}"});
+  const Outcome outcome = vivify({"check", scene.file().string()});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("it is a key of type: hop, roll, walk or crawl"));
+}
+
 TEST(Check, ReadsScripts) {
   const BodyScene scene(
       {kLetter, "model: {type: solid2d}",
