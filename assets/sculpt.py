@@ -45,13 +45,14 @@ def box(p, centre, half, radius):
 def polygon(p, corners):
     """Distances (#P) of points of the plane (#P by 2) to a polygon (#C by 2)."""
     corners = np.asarray(corners, float)
-    nearest, inside = np.full(len(p), np.inf), np.zeros(len(p), bool)
-    for a, b in zip(corners, np.roll(corners, -1, axis=0)):
-        t = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-        nearest = np.minimum(nearest, np.sum((p - a - t[:, None] * (b - a))**2, axis=1))
-        crosses = (a[1] > p[:, 1]) != (b[1] > p[:, 1])
-        if a[1] != b[1]:
-            inside ^= crosses & (p[:, 0] < a[0] + (p[:, 1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
+    x, y = np.ascontiguousarray(np.transpose(p))
+    nearest, inside = np.full(len(x), np.inf), np.zeros(len(x), bool)
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0)):
+        dx, dy, px, py = bx - ax, by - ay, x - ax, y - ay
+        t = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), 0, 1)
+        nearest = np.minimum(nearest, (px - t * dx)**2 + (py - t * dy)**2)
+        if dy != 0:
+            inside ^= ((y < ay) != (y < by)) & (px < py * dx / dy)
     return np.where(inside, -1, 1) * np.sqrt(nearest)
 
 

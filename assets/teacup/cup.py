@@ -135,13 +135,14 @@ class Profile:
 
 def polyline_distance(points, line):
     """Signed distances (#P) of 2-D points to a polyline, positive on its right, and the index of the nearest segment."""
-    a, d = line[:-1], np.diff(line, axis=0)
-    t = np.einsum("psk,sk->ps", points[:, None] - a[None], d) / np.einsum("sk,sk->s", d, d)
-    rest = points[:, None] - (a[None] + np.clip(t, 0, 1)[..., None] * d[None])
-    distance = np.linalg.norm(rest, axis=2)
+    (ax, ay), (dx, dy) = line[:-1].T, np.diff(line, axis=0).T
+    px, py = points[:, :1] - ax, points[:, 1:] - ay
+    t = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), 0, 1)
+    x, y = px - t * dx, py - t * dy
+    distance = np.sqrt(x * x + y * y)
     nearest = np.argmin(distance, axis=1)
     pick = np.arange(len(points)), nearest
-    side = rest[pick][:, 0] * d[nearest, 1] - rest[pick][:, 1] * d[nearest, 0]
+    side = x[pick] * dy[nearest] - y[pick] * dx[nearest]
     return np.where(side >= 0, 1, -1) * distance[pick], nearest
 
 
