@@ -103,10 +103,7 @@ Arrival judge_arrival(const Value& body, const Destination& destination, const S
   const auto behaviors = behaviors_of(body);
   const Track track(steps, name, destination.behavior);
   if (track.t.empty()) {
-    const auto& [path, settings] =
-        behaviors.at(static_cast<std::size_t>(steps.column("behavior", name).back()));
-    reasons.push_back("the clip ended before it set out, at " + path +
-                      (settings.has("until") ? " until " + settings["until"].as_string() : ""));
+    reasons.push_back("the clip ended before it set out, at " + progression(body, steps).at);
     return arrival;
   }
   const std::size_t end = track.t.size() - 1;
@@ -169,6 +166,22 @@ std::string describe(const std::string& body, const Arrival& arrival) {
                      "]: " + words("%.2f m short", arrival.missing);
   for (const std::string& reason : arrival.reasons) text += "; " + reason;
   return text;
+}
+
+Progression progression(const Value& body, const StepTable& steps) {
+  const auto behaviors = behaviors_of(body);
+  const auto last = static_cast<std::size_t>(steps.column("behavior", body["name"].as_string()).back());
+  const auto& [path, settings] = behaviors.at(last);
+  Progression progression{path, {}};
+  if (settings.has("until")) progression.at += " until " + settings["until"].as_string();
+  for (std::size_t i = last + 1; i < behaviors.size(); ++i)
+    progression.never_began.push_back(behaviors[i].first);
+  return progression;
+}
+
+std::string describe(const std::string& body, const Progression& progression) {
+  return body + ": the clip ended at " + progression.at + "; " + join_words(progression.never_began) +
+         " never began";
 }
 
 }  // namespace vivify::pipeline

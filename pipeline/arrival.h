@@ -1,5 +1,5 @@
-// Whether a character got to the place that it was sent to, and if not, what kept it from there: read off
-// what happened, for the summary of a run.
+// Whether a character did what it was sent to do: got to its place, and if not, what kept it from there; and
+// to the end of its script. Read off what happened, for the summary of a run.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,5 +34,15 @@ Arrival judge_arrival(const Value& body, const Destination& destination, const S
 
 // "cup: did not arrive at [2, 0, 1]: 1.20 m short; it fell over at 2.3 s".
 std::string describe(const std::string& body, const Arrival& arrival);
+
+// How far a body got in its script.
+struct Progression {
+  std::string at;                        // "behavior[0].wait until ball.arrived"
+  std::vector<std::string> never_began;  // "behavior[1].hop"
+};
+Progression progression(const Value& body, const StepTable& steps);
+
+// "cup: the clip ended at behavior[0].hop; behavior[1].turn never began".
+std::string describe(const std::string& body, const Progression& progression);
 
 }  // namespace vivify::pipeline

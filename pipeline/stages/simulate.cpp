@@ -178,6 +178,7 @@ std::string summarize(const Job& job, const std::string& csv) {
         {"min_rest_element_ratio", smallest(steps.column("min_rest_element_ratio", name))},
         {"min_rest_volume_ratio", smallest(steps.column("rest_volume_ratio", name))},
         {"max_rest_volume_ratio", largest(steps.column("rest_volume_ratio", name))}};
+    bool told = false;
     if (const std::optional<Destination> goal = destination(body)) {
       const RowMatrixXd rest = Hdf5Reader(job.out / mesh_file(body)).matrix("/X0");
       const double gravity = job.scene.settings["gravity"].as_vector3().norm();
@@ -187,8 +188,12 @@ std::string summarize(const Job& job, const std::string& csv) {
                                             {"arrived", arrival.arrived},
                                             {"missing_m", arrival.missing},
                                             {"reasons", arrival.reasons}};
-      if (!arrival.arrived) log_warning(describe(name, arrival));
+      told = !arrival.arrived;
+      if (told) log_warning(describe(name, arrival));
     }
+    const Progression reached = progression(body, steps);
+    summary["bodies"][name]["never_began"] = reached.never_began;
+    if (!told && !reached.never_began.empty()) log_warning(describe(name, reached));
   }
   return summary.dump(2) + "\n";
 }

@@ -78,6 +78,27 @@ TEST(Arrival, WhoHasNotSetOutHasNotArrived) {
   EXPECT_THAT(there.reasons, ElementsAre("the clip ended before it set out, at behavior[0].hop"));
 }
 
+TEST(Progression, TellsWhatNeverBegan) {
+  const Value script =
+      body("behavior: [{roll: {heading_deg: 0, until: cup.arrived}}, {wait: }, {turn: {by_deg: 90}}]");
+  const auto reached = [&](int last) {
+    std::string csv = sim::csv_header();
+    for (int behavior = 0; behavior <= last; ++behavior) {
+      sim::StepRecord record;
+      record.body = "ball";
+      record.behavior = behavior;
+      csv += csv_line(record);
+    }
+    return progression(script, StepTable(csv));
+  };
+  EXPECT_EQ(
+      describe("ball", reached(0)),
+      "ball: the clip ended at behavior[0].roll until cup.arrived; behavior[1].wait and behavior[2].turn "
+      "never began");
+  EXPECT_THAT(reached(1).never_began, ElementsAre("behavior[2].turn"));
+  EXPECT_THAT(reached(2).never_began, IsEmpty());
+}
+
 TEST(Arrival, GoingDownIsNoFault) {
   const Journey down = {.from = {0, 0.5, 0}, .to = {4, -3, 0}};
   EXPECT_TRUE(down.judged("controller: {type: roll, to: [4, 0, 0]}").arrived);

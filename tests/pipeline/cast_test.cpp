@@ -1,5 +1,5 @@
-// The scenes of Table 1: every character does what its scene says. Of those that take long (cast_slow_test.cpp) only the
-// beginning: the first sets out, and all obey the laws.
+// The scenes of Table 1: every character does what its scene says. Of those that take long
+// (cast_slow_test.cpp) only the beginning: the first sets out, and all obey the laws.
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/cast.h"
@@ -60,8 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Long, CastBeginning,
 
 TEST_P(CastBeginning, SetsOutByTheLaws) {
   const auto& [scene, duration_s, first, way] = GetParam();
-  const SceneRun run(std::string(scene) + ".yaml",
-                     {"--set", std::string("frames.duration_s=") + duration_s});
+  const SceneRun run(std::string(scene) + ".yaml", {"--set", std::string("frames.duration_s=") + duration_s});
   for (const Role& role : roles_in(scene)) {
     SCOPED_TRACE(role.body);
     expect_laws(run, role.body, role.height);

@@ -84,6 +84,7 @@ TEST(GoalsController, RefusesWhatMeansNothing) {
   };
   EXPECT_THAT(message("{along: [0, 0, 0], keys: [{}]}"), HasSubstr("along must not be 0"));
   EXPECT_THAT(message("{keys: [{t: 1}, {t: 1}]}"), HasSubstr("in the order of time"));
+  EXPECT_THAT(message("{keys: [{value: 0.2}]}"), HasSubstr("a value that stays asks for nothing"));
   EXPECT_THAT(message("{of: region, region: {min: [0.4, 0.44, 0.4], max: [0.41, 0.45, 0.41]}, keys: [{}]}"),
               HasSubstr("goals[0]"));
 }

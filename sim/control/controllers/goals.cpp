@@ -145,8 +145,16 @@ void check_goals(const Value& settings, const std::string& where, std::vector<Er
     };
     const Value& along = goals[i]["along"];
     if (along.as_vector3().norm() == 0) fail(along, ".along must not be 0", "give a direction");
+    const std::vector<Value>& keys = goals[i]["keys"].items();
+    const Value& value = keys.front()["value"];
+    const bool stays = std::all_of(keys.begin(), keys.end(), [&](const Value& key) {
+      return key["value"].as_number() == value.as_number();
+    });
+    if (stays && value.as_number() != 0 && goals[i]["frequency"].as_number() == 0)
+      fail(value, ".keys: a value that stays asks for nothing, as frequency is 0",
+           "give the goal a frequency, in 1/s");
     double last = -1;
-    for (const Value& key : goals[i]["keys"].items()) {
+    for (const Value& key : keys) {
       const double t = key["t"].as_number();
       if (t <= last) fail(key, ".keys must be in the order of time", "let each t be after the one before it");
       if (settings.has("period_s") && t > settings["period_s"].as_number())
