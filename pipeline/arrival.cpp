@@ -170,7 +170,9 @@ std::string describe(const std::string& body, const Arrival& arrival) {
 
 Progression progression(const Value& body, const StepTable& steps) {
   const auto behaviors = behaviors_of(body);
-  const auto last = static_cast<std::size_t>(steps.column("behavior", body["name"].as_string()).back());
+  const std::vector<double> reached = steps.column("behavior", body["name"].as_string());
+  const auto last =
+      static_cast<std::size_t>(reached.empty() ? 0 : reached.back());  // empty: it appeared just now
   const auto& [path, settings] = behaviors.at(last);
   Progression progression{path, {}};
   if (settings.has("until")) progression.at += " until " + settings["until"].as_string();

@@ -97,6 +97,8 @@ TEST(Progression, TellsWhatNeverBegan) {
       "never began");
   EXPECT_THAT(reached(1).never_began, ElementsAre("behavior[2].turn"));
   EXPECT_THAT(reached(2).never_began, IsEmpty());
+  EXPECT_THAT(reached(-1).never_began, ElementsAre("behavior[1].wait", "behavior[2].turn"))
+      << "it has just appeared";
 }
 
 TEST(Arrival, GoingDownIsNoFault) {
